@@ -1,0 +1,42 @@
+// engine/box.h -- the sheared periodic box (Lees & Edwards, J. Phys. C 5, 1921, 1972).
+//
+// length   Lx, Ly, Lz [a] > 0
+// offset   displacement D of the image cell above (y + Ly) along x [a]; dD/dt = shear_rate Ly
+//
+// The nearest image is unique while every interaction range is below half of each box length.
+#pragma once
+#include "engine/types.h"
+
+#include <vector>
+
+namespace sigmaflow {
+
+struct Box {
+    Vec3 length{1, 1, 1};
+    double offset = 0;
+
+    double volume() const { return length.prod(); }
+};
+
+/// Vector from a point to the nearest image of another one, and the row of images it lies in: the
+/// image moves with U + image * shear_rate * Ly e_x. Points may lie any number of cells away.
+struct Separation {
+    Vec3 d;
+    int image;
+};
+
+inline Separation separation(const Box& box, const Vec3& from, const Vec3& to)
+{
+    Vec3 d = to - from;
+    const double q = -std::round(d.y() / box.length.y());
+    d.y() += q * box.length.y();
+    d.x() += q * box.offset;
+    d.x() -= box.length.x() * std::round(d.x() / box.length.x());
+    d.z() -= box.length.z() * std::round(d.z() / box.length.z());
+    return {d, static_cast<int>(q)};
+}
+
+/// Brings every point into [0, Lx) x [0, Ly) x [0, Lz) and the offset into [0, Lx).
+void wrap(Box& box, std::vector<Vec3>& positions);
+
+}

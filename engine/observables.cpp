@@ -1,0 +1,211 @@
+// What is derived from an evaluation for output: forces of pairs, power balance, samples and
+// frames.
+#include "engine/ambient.h"
+#include "engine/evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sigmaflow {
+
+using lubrication::PairLoad;
+
+namespace {
+
+double power(const PairLoad& load, const PairVelocities& v)
+{
+    return load.force_i.dot(v.i.head<3>()) + load.torque_i.dot(v.i.tail<3>()) +
+           load.force_j.dot(v.j.head<3>()) + load.torque_j.dot(v.j.tail<3>());
+}
+
+// Torques use radii instead of lever arms, so a pair load has a small net torque in the ambient
+// spin.
+double spin_residual(const PairLoad& load, const Pair& pair, double rate)
+{
+    const Vec3 net = load.torque_i + load.torque_j - pair.separation.cross(load.force_i);
+    return -0.5 * rate * net.z();
+}
+
+PairLoad dashpot_load(const State& s, const Evaluation& e, const PairState& p)
+{
+    const auto [vi, vj] = moving(s, e, p.pair);
+    return negative(lubrication::resistance_times(p.resistance, p.pair.normal, vi, vj));
+}
+
+void add_pair_power(const State& s, const Evaluation& e, const PairState& p, PowerBalance& balance)
+{
+    const PairVelocities total = moving(s, e, p.pair);
+    const Vec3 force = -p.repulsion * p.pair.normal;
+    const PairLoad repulsive{force, Vec3::Zero(), -force, Vec3::Zero()};
+    balance.repulsion -= power(repulsive, total);
+    balance.torque_residual += spin_residual(repulsive, p.pair, e.shear_rate);
+    if (p.dashpot) {
+        const PairLoad load = dashpot_load(s, e, p);
+        balance.dashpot -= power(load, total);
+        balance.torque_residual += spin_residual(load, p.pair, e.shear_rate);
+        return;
+    }
+    const PairVelocities v{e.nonaffine[p.pair.i], e.nonaffine[p.pair.j]};
+    const Mat3 E = e.shear_rate * unit_strain_rate();
+    const auto stresslet = lubrication::strain_stresslet(p.resistance, p.pair.normal, E);
+    balance.lubrication +=
+        power(lubrication::resistance_times(p.resistance, p.pair.normal, v.i, v.j), v) -
+        2 * power(lubrication::strain_load(p.resistance, p.pair.normal, E), v) +
+        (stresslet.on_i + stresslet.on_j).cwiseProduct(E).sum();
+}
+
+double nonaffine_speed(const Evaluation& e, int i)
+{
+    return e.nonaffine[i].head<3>().norm() / std::abs(e.shear_rate);
+}
+
+}
+
+Velocities total_velocities(const State& state, const Evaluation& e)
+{
+    Velocities v(state.size());
+    for (int i = 0; i < state.size(); ++i) v[i] = e.nonaffine[i] + e.shear_rate * ambient(state, i);
+    return v;
+}
+
+std::vector<PairForces> pair_forces(const State& state, const Evaluation& e)
+{
+    std::vector<PairForces> forces;
+    forces.reserve(e.pairs.size());
+    const Mat3 E = e.shear_rate * unit_strain_rate();
+    for (const PairState& p : e.pairs) {
+        PairForces f{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), -p.repulsion * p.pair.normal};
+        const Vec6 &vi = e.nonaffine[p.pair.i], &vj = e.nonaffine[p.pair.j];
+        if (p.dashpot)
+            f.dashpot = dashpot_load(state, e, p).force_i;
+        else
+            f.lubrication =
+                lubrication::strain_load(p.resistance, p.pair.normal, E).force_i -
+                lubrication::resistance_times(p.resistance, p.pair.normal, vi, vj).force_i;
+        forces.push_back(f);
+    }
+    for (const ContactLoad& c : e.contacts) forces[c.pair].contact = c.force_on_i;
+    return forces;
+}
+
+PowerBalance power_balance(const State& state, const Evaluation& e)
+{
+    PowerBalance balance;
+    const double volume = state.box.volume();
+    balance.input = volume * e.shear_rate * e.total_stress()(flow, gradient);
+    balance.solvent = volume * e.shear_rate * e.stress[solvent](flow, gradient);
+    for (int i = 0; i < state.size(); ++i)
+        balance.drag += drag(state, e.model, i).dot(e.nonaffine[i].cwiseAbs2());
+    for (const PairState& p : e.pairs) add_pair_power(state, e, p, balance);
+    for (const ContactLoad& c : e.contacts) {
+        const Pair& pair = e.pairs[c.pair].pair;
+        const PairLoad load{c.force_on_i, c.torque_on_i, -c.force_on_i, c.torque_on_j};
+        balance.contact -= power(load, moving(state, e, pair));
+        balance.torque_residual += spin_residual(load, pair, e.shear_rate);
+    }
+    return balance;
+}
+
+std::span<const SampleField> sample_fields()
+{
+    static constexpr SampleField fields[] = {
+        {"strain", "-", "accumulated strain", &Sample::strain},
+        {"time", "1/rate0", "time", &Sample::time},
+        {"shear_rate", "rate0", "shear rate", &Sample::shear_rate},
+        {"shear_stress", "sigma0", "shear stress", &Sample::shear_stress},
+        {"viscosity", "eta0", "shear stress over shear rate", &Sample::viscosity},
+        {"normal_stress_difference_1", "sigma0", "N1 = S_xx - S_yy",
+         &Sample::normal_stress_difference_1},
+        {"normal_stress_difference_2", "sigma0", "N2 = S_yy - S_zz",
+         &Sample::normal_stress_difference_2},
+        {"particle_pressure", "sigma0", "-tr(S)/3", &Sample::particle_pressure},
+        {"stress_solvent", "sigma0", "shear stress of the solvent, with 5/2 phi if on",
+         &Sample::stress_solvent},
+        {"stress_hydrodynamic", "sigma0", "shear stress of lubrication and dashpots",
+         &Sample::stress_hydrodynamic},
+        {"stress_contact", "sigma0", "shear stress of contacts", &Sample::stress_contact},
+        {"stress_repulsion", "sigma0", "shear stress of the repulsion", &Sample::stress_repulsion},
+        {"contact_number", "-", "touching neighbours per particle, 2 N_c/n",
+         &Sample::contact_number},
+        {"frictional_contact_number", "-", "frictional touching neighbours per particle",
+         &Sample::frictional_contact_number},
+        {"sliding_fraction", "-", "sliding share of the frictional contacts",
+         &Sample::sliding_fraction},
+        {"smallest_xi", "-", "smallest reduced gap; minus it is the largest overlap",
+         &Sample::smallest_xi},
+        {"mean_nonaffine_speed", "-", "mean of |U - U_inf|/(|rate| a)",
+         &Sample::mean_nonaffine_speed},
+    };
+    return fields;
+}
+
+Sample make_sample(const State& state, const Evaluation& e)
+{
+    Sample s;
+    const Mat3 S = e.total_stress();
+    auto shear = [&](std::initializer_list<StressPart> parts) {
+        double sum = 0;
+        for (StressPart p : parts) sum += e.stress[p](flow, gradient);
+        return sum;
+    };
+    s.strain = state.strain;
+    s.time = state.time;
+    s.shear_rate = e.shear_rate;
+    s.shear_stress = S(flow, gradient);
+    s.viscosity = s.shear_stress / e.shear_rate;
+    s.normal_stress_difference_1 = S(0, 0) - S(1, 1);
+    s.normal_stress_difference_2 = S(1, 1) - S(2, 2);
+    s.particle_pressure = -S.trace() / 3;
+    s.stress_solvent = shear({solvent});
+    s.stress_hydrodynamic = shear({hydro_RSE, hydro_RSU, dashpot_RSU, dashpot_xF});
+    s.stress_contact = shear({contact_xF, contact_RSU});
+    s.stress_repulsion = shear({repulsion_xF, repulsion_RSU});
+    int frictional = 0, sliding = 0;
+    for (const ContactLoad& c : e.contacts) {
+        frictional += c.frictional;
+        sliding += c.frictional && c.memory.sliding;
+    }
+    const double n = std::max(state.size(), 1);
+    s.contact_number = 2 * static_cast<double>(e.contacts.size()) / n;
+    s.frictional_contact_number = 2 * frictional / n;
+    s.sliding_fraction = frictional ? static_cast<double>(sliding) / frictional : 0;
+    s.smallest_xi = std::numeric_limits<double>::infinity();
+    for (const PairState& p : e.pairs) s.smallest_xi = std::min(s.smallest_xi, p.pair.xi);
+    double speed = 0;
+    for (int i = 0; i < state.size(); ++i) speed += nonaffine_speed(e, i);
+    s.mean_nonaffine_speed = speed / n;
+    return s;
+}
+
+Frame make_frame(const State& state, const Evaluation& e)
+{
+    Frame f;
+    f.state = state;
+    f.sample = make_sample(state, e);
+    f.volume_fraction = volume_fraction(state);
+    f.species = species(state);
+    f.particle_stress = particle_stress(state, e);
+    f.contact_number.assign(state.size(), 0);
+    const Velocities total = total_velocities(state, e);
+    for (int i = 0; i < state.size(); ++i) {
+        f.velocity.push_back(total[i].head<3>());
+        f.angular_velocity.push_back(total[i].tail<3>());
+        f.nonaffine_velocity.push_back(e.nonaffine[i].head<3>());
+        f.nonaffine_speed.push_back(nonaffine_speed(e, i));
+    }
+    f.state.contacts.clear();
+    for (const ContactLoad& c : e.contacts) {
+        const Pair& pair = e.pairs[c.pair].pair;
+        ++f.contact_number[pair.i];
+        ++f.contact_number[pair.j];
+        f.state.contacts.push_back(c.memory);
+        f.contacts.push_back({pair.i, pair.j, state.position[pair.i],
+                              state.position[pair.i] + pair.separation, pair.xi,
+                              c.load / reference_force, c.friction / reference_force,
+                              c.memory.sliding, c.frictional});
+    }
+    return f;
+}
+
+}

@@ -1,0 +1,29 @@
+#include "engine/resistance_matrix.h"
+
+namespace sigmaflow {
+
+Mat6 off_diagonal(const PairBlock& p)
+{
+    const Mat3 nn = p.normal * p.normal.transpose();
+    const Mat3 tangential = Mat3::Identity() - nn;
+    const Mat3 twist = cross_matrix(p.normal);
+    Mat6 block;
+    block.topLeftCorner<3, 3>() = -(p.xa * nn + p.ya * tangential);
+    block.topRightCorner<3, 3>() = p.yb21 * twist;
+    block.bottomLeftCorner<3, 3>() = p.yb11 * twist;
+    block.bottomRightCorner<3, 3>() = p.yc12 * tangential;
+    return block;
+}
+
+void multiply(const ResistanceMatrix& m, const std::vector<Vec6>& v, std::vector<Vec6>& result)
+{
+    result.resize(v.size());
+    for (int i = 0; i < m.size(); ++i) result[i].noalias() = m.diagonal[i] * v[i];
+    for (const PairBlock& p : m.pairs) {
+        const Mat6 block = off_diagonal(p);
+        result[p.i].noalias() += block * v[p.j];
+        result[p.j].noalias() += block.transpose() * v[p.i];
+    }
+}
+
+}

@@ -1,0 +1,35 @@
+// engine/state.h -- what is needed to continue a run, and nothing that can be recomputed.
+#pragma once
+#include "engine/box.h"
+#include "engine/types.h"
+
+#include <vector>
+
+namespace sigmaflow {
+
+/// Memory of one touching pair i < j.
+struct Contact {
+    int i = 0, j = 0;
+    Vec3 spring = Vec3::Zero();   // tangential stretch [a], perpendicular to the normal
+    Vec3 rolling = Vec3::Zero();  // rolling stretch [a]
+    bool sliding = false;
+};
+
+struct State {
+    Box box;
+    std::vector<Vec3> position;     // [n] [a]
+    std::vector<double> radius;     // [n] [a] > 0
+    std::vector<Contact> contacts;  // sorted by (i, j)
+    double strain = 0;              // accumulated [-]
+    double time = 0;                // [1/rate0]
+
+    int size() const { return static_cast<int>(radius.size()); }
+};
+
+/// Sum of the particle volumes over the box volume [-].
+double volume_fraction(const State& state);
+
+/// Index of each particle's radius in the ascending list of distinct radii: 0 for the smallest.
+std::vector<int> species(const State& state);
+
+}

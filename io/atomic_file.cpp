@@ -1,0 +1,136 @@
+#include "io/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace sigmaflow::io {
+namespace {
+
+/// Closes a descriptor at the end of the scope; for reading, where closing cannot lose anything.
+class Descriptor {
+public:
+    explicit Descriptor(int value) : value_(value) {}
+    ~Descriptor()
+    {
+        if (value_ >= 0) ::close(value_);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    int value() const { return value_; }
+
+private:
+    int value_;
+};
+
+/// Pipes and devices cannot be synced; that is no error.
+bool synced(int descriptor)
+{
+    return ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP;
+}
+
+void sync_path(const std::filesystem::path& path, int flags)
+{
+    const Descriptor opened(::open(path.c_str(), flags | O_CLOEXEC));
+    if (opened.value() < 0 || !synced(opened.value())) throw write_error(path, errno);
+}
+
+}
+
+Error write_error(const std::filesystem::path& path, int error_number)
+{
+    const bool full = error_number == ENOSPC || error_number == EDQUOT || error_number == EFBIG;
+    return Error(full ? ErrorKind::no_space : ErrorKind::file, path.string(),
+                 std::string("cannot be written: ") + std::strerror(error_number));
+}
+
+OutputFile::OutputFile(std::filesystem::path path)
+    : path_(std::move(path)),
+      descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666))
+{
+    if (descriptor_ < 0) throw write_error(path_, errno);
+}
+
+OutputFile::~OutputFile()
+{
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1))
+{
+}
+
+void OutputFile::write(std::string_view text)
+{
+    while (!text.empty()) {
+        const ssize_t written = ::write(descriptor_, text.data(), text.size());
+        if (written < 0 && errno != EINTR) throw write_error(path_, errno);
+        if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
+void OutputFile::sync()
+{
+    if (!synced(descriptor_)) throw write_error(path_, errno);
+}
+
+void OutputFile::close()
+{
+    if (::close(std::exchange(descriptor_, -1)) != 0) throw write_error(path_, errno);
+}
+
+void commit_file(const std::filesystem::path& temporary, const std::filesystem::path& path)
+{
+    sync_path(temporary, O_RDONLY);
+    if (::rename(temporary.c_str(), path.c_str()) != 0) throw write_error(path, errno);
+    sync_path(path.has_parent_path() ? path.parent_path() : ".", O_RDONLY | O_DIRECTORY);
+}
+
+void write_file(const std::filesystem::path& path, std::string_view text)
+{
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+    const bool special = std::filesystem::exists(status) &&
+                         !std::filesystem::is_regular_file(status) &&
+                         !std::filesystem::is_directory(status);
+    std::filesystem::path target = path;
+    if (!special) target += ".tmp";
+    try {
+        OutputFile file(target);
+        file.write(text);
+        file.close();
+        if (!special) commit_file(target, path);
+    } catch (const Error&) {
+        if (!special) std::filesystem::remove(target, ignored);
+        throw;
+    }
+}
+
+std::string read_file(const std::filesystem::path& path)
+{
+    const auto unreadable = [&path](int error_number) {
+        return Error(ErrorKind::missing, path.string(),
+                     std::string("cannot be read: ") + std::strerror(error_number));
+    };
+    const Descriptor opened(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (opened.value() < 0) throw unreadable(errno);
+    std::string text;
+    std::array<char, 65536> buffer;
+    while (true) {
+        const ssize_t got = ::read(opened.value(), buffer.data(), buffer.size());
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) throw unreadable(errno);
+        if (got == 0) return text;
+        text.append(buffer.data(), static_cast<std::size_t>(got));
+        if (text.size() > largest_text_file)
+            throw Error(ErrorKind::input, path.string(),
+                        "must not be larger than " + std::to_string(largest_text_file) + " bytes");
+    }
+}
+
+}

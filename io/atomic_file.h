@@ -1,0 +1,49 @@
+// io/atomic_file.h -- text files that are either complete or not there, and system errors as
+// Errors.
+//
+// write_file writes "<path>.tmp", brings it to the disk (fsync), renames it and syncs the folder:
+// after a crash or a full disk the old file is still there, whole. What is not a regular file
+// (/dev/stdout) is written directly. Errors carry the path and the reason given by the system:
+// no_space (disk or quota full, file size limit), file (anything else that cannot be written),
+// missing (cannot be read), input (too large).
+#pragma once
+#include "engine/error.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace sigmaflow::io {
+
+inline constexpr std::size_t largest_text_file = std::size_t{64} << 20;  // 64 MiB
+
+void write_file(const std::filesystem::path& path, std::string_view text);
+
+/// The whole file; at most largest_text_file bytes.
+std::string read_file(const std::filesystem::path& path);
+
+/// Gives a complete file its name: fsync, rename, fsync of the folder.
+void commit_file(const std::filesystem::path& temporary, const std::filesystem::path& path);
+
+/// The Error of a failed write with the system's error number.
+Error write_error(const std::filesystem::path& path, int error_number);
+
+/// A file open for writing from its beginning, unbuffered: what was written can be read by others.
+class OutputFile {
+public:
+    explicit OutputFile(std::filesystem::path path);
+    ~OutputFile();
+    OutputFile(OutputFile&& other) noexcept;
+    OutputFile& operator=(OutputFile&&) = delete;
+
+    void write(std::string_view text);
+    void sync();
+    void close();
+
+private:
+    std::filesystem::path path_;
+    int descriptor_ = -1;
+};
+
+}

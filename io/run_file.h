@@ -1,0 +1,48 @@
+// io/run_file.h -- the HDF5 file of one shearing step (schema: io/README.md).
+//
+// Time series of every scalar, H5MD-style particle frames, units as attributes, provenance.
+// The file grows under the name "<path>.part" and gets its own name when finished, so a file called
+// run.h5 is always complete. Errors: file, no_space, missing, input (not a sigmaflow file).
+#pragma once
+#include "engine/frame.h"
+#include "engine/model.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sigmaflow::io {
+
+/// Texts stored as attributes of the group /provenance, e.g. version, seed, resolved workflow.
+using Provenance = std::map<std::string, std::string>;
+
+class RunWriter {
+public:
+    RunWriter(const std::filesystem::path& path, const State& first, const Model& model,
+              const Control& control, const Provenance& provenance);
+    ~RunWriter();
+    RunWriter(RunWriter&&) noexcept;
+
+    void append(const Sample& sample);
+    void append(const Frame& frame);
+    void flush();
+    /// Completes the file and gives it its name.
+    void finish();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+struct StoredRun {
+    std::vector<Sample> series;
+    std::vector<Frame> frames;
+    Provenance provenance;
+};
+
+/// Reads a finished run back; every number bitwise as it was written.
+StoredRun read_run(const std::filesystem::path& path);
+
+}

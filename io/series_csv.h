@@ -1,0 +1,28 @@
+// io/series_csv.h -- the time series as text: one line of comments with the units, one of names,
+// then one row per sample. Numbers have as many digits as are needed to read back the same bits (at
+// most 17). Every row is written at once, so the file can be watched while a run goes on. Errors:
+// file, no_space; reading: missing, input (with the line number).
+#pragma once
+#include "engine/frame.h"
+#include "io/atomic_file.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace sigmaflow::io {
+
+class SeriesWriter {
+public:
+    explicit SeriesWriter(const std::filesystem::path& path);
+    void append(const Sample& sample);
+    /// Brings the file to the disk and closes it.
+    void finish();
+
+private:
+    OutputFile file_;
+};
+
+/// Reads a file of SeriesWriter; the columns must be those of sample_fields().
+std::vector<Sample> read_series(const std::filesystem::path& path);
+
+}

@@ -1,0 +1,105 @@
+// workflows/step.h -- what a step of a workflow is.
+//
+// A step is a struct with three functions:
+//   void describe(io::Fields&)                       its parameters, each declared once
+//   void validate(const io::JsonNode&, Plan&)        everything that can be wrong before computing
+//   void run(Context&) const                         the work
+// and one row in the list of steps.cpp. All steps are validated before the first one runs. Steps hand
+// on their results through the context: the state of the suspension and the runs made so far.
+#pragma once
+#include "engine/frame.h"
+#include "engine/model.h"
+#include "engine/state.h"
+#include "io/json_fields.h"
+#include "io/run_file.h"
+#include "workflows/progress.h"
+#include "workflows/run_folder.h"
+#include "workflows/suspension.h"
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace sigmaflow::workflows {
+
+/// A shearing step that a later step can refer to.
+struct PlannedRun {
+    std::string name;
+    Control control;
+    double strain = 0;
+    bool has_frames = false;
+};
+
+/// What is known while the steps are validated in their order.
+struct Plan {
+    const Suspension& suspension;
+    std::string step_name;
+    bool has_state = false;
+    std::vector<PlannedRun> runs;
+
+    /// Error(input) if no step before has made a packing.
+    void need_state(const io::JsonNode& step) const;
+    /// The run that the field `of` names, or the last one if it is empty, with frames if asked for;
+    /// `of` is filled in. Errors: input (no such run).
+    const PlannedRun& need_run(const io::JsonNode& step, std::string& of, bool with_frames) const;
+};
+
+/// A finished shearing step.
+struct Run {
+    std::string name;
+    Control control;
+    double volume_fraction = 0;
+    std::filesystem::path file;  // run.h5
+    std::vector<Sample> series;  // at equal strain intervals
+    double start_up = 0;         // strain of the start-up that averages leave out
+    bool finished = false;       // reached its strain
+};
+
+/// What the steps work on and hand on.
+struct Context {
+    const Suspension& suspension;
+    io::Provenance provenance;
+    RunFolder& folder;
+    Progress& progress;
+
+    State state;
+    std::vector<Run> runs;
+
+    std::string step_name;            // of the step that is running
+    nlohmann::ordered_json results;   // of the step that is running, for summary.json
+    std::vector<std::string> problems;  // pictures that could not be drawn
+
+    const Run& run(const std::string& name) const;
+};
+
+struct Step {
+    std::string kind, name;
+    std::string pointer;  // "/steps/2"
+    std::function<void(io::Fields&)> describe;
+    std::function<void(const io::JsonNode&, Plan&)> validate;
+    std::function<void(Context&)> run;
+};
+
+/// A row of the list of steps.
+struct StepKind {
+    std::string_view name, summary;
+    std::function<Step()> make;
+};
+
+template <class T>
+StepKind step_kind(std::string_view name, std::string_view summary)
+{
+    return {name, summary, [name] {
+                auto step = std::make_shared<T>();
+                return Step{std::string(name), std::string(name), "",
+                            [step](io::Fields& f) { step->describe(f); },
+                            [step](const io::JsonNode& node, Plan& plan) {
+                                step->validate(node, plan);
+                            },
+                            [step](Context& context) { step->run(context); }};
+            }};
+}
+
+}

@@ -1,0 +1,39 @@
+#include "workflows/suspension.h"
+
+#include "io/model_fields.h"
+
+namespace sigmaflow::workflows {
+
+void Suspension::describe(io::Fields& f)
+{
+    f("particles", packing.particles, io::Integers{2, 10'000'000}, "-", "number of spheres");
+    f("volume_fraction", packing.volume_fraction, io::above_to(0, 0.64), "-",
+      "volume of the spheres over volume of the box, met exactly");
+    f("size_ratio", packing.size_ratio, io::between(1, 10), "-",
+      "radius of the large spheres; the small ones have radius 1");
+    f("small_volume_share", packing.small_volume_share, io::between(0, 1), "-",
+      "share of the solid volume in small spheres");
+    f("radii", packing.radii, io::Length{2, 10'000'000}, io::between(0.01, 100), "a",
+      "radii of all spheres, instead of size_ratio and small_volume_share");
+    f("box_shape", packing.box_shape, io::between(0.01, 100), "-",
+      "ratios of the box lengths along flow, gradient and vorticity");
+    f("seed", packing.seed, "seed of the random packing; the same seed gives the same run");
+    f.group("model", "physical parameters",
+            [this](io::Fields& inner) { io::describe(inner, model); });
+}
+
+void Suspension::check(const io::JsonNode& object)
+{
+    if (const auto node = object.find("model")) io::check_model(model, *node);
+    if (packing.radii.empty()) return;
+    for (const char* other : {"size_ratio", "small_volume_share"})
+        if (object.has(other))
+            throw object.error_at_key(other, "radii already says how large the spheres are");
+    const int given = static_cast<int>(packing.radii.size());
+    if (object.has("particles") && packing.particles != given)
+        throw object.member("particles").wrong("must be the number of radii, " +
+                                               std::to_string(given));
+    packing.particles = given;
+}
+
+}

@@ -1,0 +1,18 @@
+// workflows/suspension.h -- the suspension that a workflow works on, named once.
+#pragma once
+#include "engine/model.h"
+#include "engine/packing.h"
+#include "io/json_fields.h"
+
+namespace sigmaflow::workflows {
+
+struct Suspension {
+    PackingParameters packing;
+    Model model;
+
+    void describe(io::Fields& f);
+    /// Combinations that exclude each other. Errors: input, with the position in `object`.
+    void check(const io::JsonNode& object);
+};
+
+}
