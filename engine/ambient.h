@@ -22,9 +22,9 @@ inline Vec6 ambient(const State& s, int i)
     return v;
 }
 
-/// Stokes drag coefficients of particle i: 6 pi a (force), 8 pi a^3 (torque), times the drag factor.
-/// Without background drag a factor of 1e-8 stands for the limit 0: the velocities differ from the
-/// limit by that order once the drift is removed.
+/// Stokes drag coefficients of particle i: 6 pi a (force), 8 pi a^3 (torque), times the drag
+/// factor. Without background drag a factor of 1e-8 stands for the limit 0: the velocities differ
+/// from the limit by that order once the drift is removed.
 inline Vec6 drag(const State& s, const Model& m, int i)
 {
     const double zeta = m.background_drag ? m.drag_factor : 1e-8;

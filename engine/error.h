@@ -1,8 +1,9 @@
 // engine/error.h -- the one exception type of sigmaflow.
 //
-// An Error says what kind of failure it is (the kind is also the exit code of the program), where it
-// happened, and what is wrong with the value and the limit. Layers add context while the exception
-// unwinds, innermost last: `error.within("/steps/2")`. Messages are lower case without a full stop.
+// An Error says what kind of failure it is (the kind is also the exit code of the program), where
+// it happened, and what is wrong with the value and the limit. Layers add context while the
+// exception unwinds, innermost last: `error.within("/steps/2")`. Messages are lower case without a
+// full stop.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -26,7 +27,9 @@ class Error : public std::runtime_error {
 public:
     Error(ErrorKind kind, std::string where, std::string what_is_wrong)
         : std::runtime_error(where.empty() ? what_is_wrong : where + ": " + what_is_wrong),
-          kind_(kind), where_(std::move(where)), problem_(std::move(what_is_wrong))
+          kind_(kind),
+          where_(std::move(where)),
+          problem_(std::move(what_is_wrong))
     {
     }
 

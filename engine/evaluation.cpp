@@ -3,7 +3,7 @@
 #include "engine/ambient.h"
 #include "engine/error.h"
 #include "engine/forces/repulsion.h"
-#include "engine/solver.h"
+#include "engine/workspace.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,21 +11,37 @@
 namespace sigmaflow {
 
 using lubrication::PairLoad;
-using lubrication::PairStresslet;
 
-struct Workspace::Buffers {
-    NeighbourList neighbours;
-    SpdSolver solver;
-    ResistanceMatrix matrix;
-    std::array<Velocities, column_names.size()> loads;
-};
-
-Workspace::Workspace() : buffers_(std::make_unique<Buffers>()) {}
+Workspace::Workspace(const SolverSettings& solver) : buffers_(std::make_unique<Buffers>(solver)) {}
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-namespace {
+Velocities SolutionHistory::guess(double at) const
+{
+    if (known == 0) return {};
+    const double interval = time[0] - time[1], ahead = at - time[0];
+    // beyond a few intervals a straight line is worse than the last value
+    if (known == 1 || ahead == 0 || !(std::abs(ahead) < 4 * std::abs(interval))) return solution[0];
+    const double weight = ahead / interval;
+    Velocities v(solution[0].size());
+    for (std::size_t i = 0; i < v.size(); ++i)
+        v[i] = solution[0][i] + weight * (solution[0][i] - solution[1][i]);
+    return v;
+}
+
+void SolutionHistory::remember(double at, const Velocities& v)
+{
+    if (known > 0 && solution[0].size() != v.size()) known = 0;
+    if (known > 0 && at != time[0]) {
+        std::swap(solution[0], solution[1]);
+        time[1] = time[0];
+        known = 2;
+    }
+    known = std::max(known, 1);
+    time[0] = at;
+    solution[0] = v;
+}
 
 bool uses_dashpot(const Model& m)
 {
@@ -37,21 +53,61 @@ double interaction_range(const Model& m)
     return std::max(m.lubrication_range, m.repulsion_range);
 }
 
-void update_neighbours(const State& state, const Model& m, Workspace::Buffers& b)
+PairLoad dashpot_unit_load(const State& s, const PairState& p)
 {
-    if (b.neighbours.update(state, interaction_range(m)))
-        b.solver.set_pattern(state.size(), b.neighbours.candidates());
+    const auto [vi, vj] = with_image({ambient(s, p.pair.i), ambient(s, p.pair.j)}, p.pair, s, 1);
+    return negative(lubrication::resistance_times(resistance(s, p), p.pair.normal, vi, vj));
+}
+
+void add(Velocities& loads, const Pair& pair, const PairLoad& load)
+{
+    loads[pair.i].head<3>() += load.force_i;
+    loads[pair.i].tail<3>() += load.torque_i;
+    loads[pair.j].head<3>() += load.force_j;
+    loads[pair.j].tail<3>() += load.torque_j;
+}
+
+void remove_drift(const State& s, Velocities& v)
+{
+    Vec3 drift = Vec3::Zero();
+    double weight = 0;
+    for (int i = 0; i < s.size(); ++i) {
+        drift += s.radius[i] * v[i].head<3>();
+        weight += s.radius[i];
+    }
+    for (Vec6& one : v) one.head<3>() -= drift / weight;
+}
+
+double solvent_resistance(const State& s, const Model& m)
+{
+    return s.box.volume() * (m.einstein ? 1 + 2.5 * volume_fraction(s) : 1.);
+}
+
+namespace {
+
+void update_neighbours(const State& s, const Model& m, Workspace::Buffers& b)
+{
+    if (!b.neighbours.update(s, interaction_range(m))) return;
+    const auto& candidates = b.neighbours.candidates();
+    b.solver.set_pattern(s.size(), candidates);
+    b.coefficients.clear();
+    b.coefficients.reserve(candidates.size());
+    for (const auto [i, j] : candidates) {
+        const auto c = lubrication::pair_coefficients(s.radius[i], s.radius[j]);
+        b.coefficients.push_back({c.xa, c.ya, c.yb11, c.yb21, c.yc11, c.yc12, c.yc22});
+    }
 }
 
 PairState pair_state(const Pair& pair, const State& s, const Model& m, const Stiffness& k)
 {
-    const double a = s.radius[pair.i], b = s.radius[pair.j];
-    PairState p{pair, {}, repulsion(pair, a, b, m), pair.touching() && uses_dashpot(m)};
+    PairState p{pair,
+                {0, 0},
+                repulsion(pair, s.radius[pair.i], s.radius[pair.j], m),
+                pair.touching() && uses_dashpot(m)};
     if (pair.xi < m.lubrication_range) {
-        auto [L, l] = lubrication::gap_factors(pair.xi, m.lubrication_delta);
+        p.factors = lubrication::gap_factors(pair.xi, m.lubrication_delta);
         if (pair.touching() && m.contact_relaxation_time > 0)
-            L = 4 * k.normal * m.contact_relaxation_time;
-        p.resistance = lubrication::scaled(lubrication::pair_coefficients(a, b), L, l);
+            p.factors.L = 4 * k.normal * m.contact_relaxation_time;
     }
     return p;
 }
@@ -76,192 +132,212 @@ std::vector<ContactLoad> contact_loads(const std::vector<PairState>& pairs, cons
     return loads;
 }
 
-void add(Velocities& loads, const Pair& pair, const PairLoad& load)
-{
-    loads[pair.i].head<3>() += load.force_i;
-    loads[pair.i].tail<3>() += load.torque_i;
-    loads[pair.j].head<3>() += load.force_j;
-    loads[pair.j].tail<3>() += load.torque_j;
-}
-
-PairLoad dashpot_unit_load(const State& s, const PairState& p)
-{
-    const auto [vi, vj] = with_image({ambient(s, p.pair.i), ambient(s, p.pair.j)}, p.pair, s, 1);
-    return negative(lubrication::resistance_times(p.resistance, p.pair.normal, vi, vj));
-}
-
-void assemble_loads(const State& s, const Evaluation& e,
-                    std::array<Velocities, column_names.size()>& loads)
-{
-    for (Velocities& column : loads) column.assign(s.size(), Vec6::Zero());
-    for (const PairState& p : e.pairs) {
-        if (p.dashpot)
-            add(loads[column_dashpot], p.pair, dashpot_unit_load(s, p));
-        else
-            add(loads[column_hydro], p.pair,
-                lubrication::strain_load(p.resistance, p.pair.normal, unit_strain_rate()));
-        const Vec3 repulsive = -p.repulsion * p.pair.normal;
-        loads[column_repulsion][p.pair.i].head<3>() += repulsive;
-        loads[column_repulsion][p.pair.j].head<3>() -= repulsive;
-    }
-    for (const ContactLoad& c : e.contacts)
-        add(loads[column_contact], e.pairs[c.pair].pair,
-            {c.force_on_i, c.torque_on_i, -c.force_on_i, c.torque_on_j});
-}
-
-void add_diagonal(const lubrication::PairResistance& r, const Vec3& n, Mat6& on_i, Mat6& on_j)
+void add_diagonal(const Vec3& n, double normal, double shear, double twist, double turn,
+                  Mat6& block)
 {
     const Mat3 nn = n * n.transpose();
-    const Mat3 tangential = Mat3::Identity() - nn;
-    const Mat3 translation = r.xa * nn + r.ya * tangential, twist = cross_matrix(n);
-    on_i.topLeftCorner<3, 3>() += translation;
-    on_i.topRightCorner<3, 3>() += r.yb11 * twist;
-    on_i.bottomLeftCorner<3, 3>() -= r.yb11 * twist;
-    on_i.bottomRightCorner<3, 3>() += r.yc11 * tangential;
-    on_j.topLeftCorner<3, 3>() += translation;
-    on_j.topRightCorner<3, 3>() -= r.yb21 * twist;
-    on_j.bottomLeftCorner<3, 3>() += r.yb21 * twist;
-    on_j.bottomRightCorner<3, 3>() += r.yc22 * tangential;
+    const Mat3 tangential = Mat3::Identity() - nn, cross = twist * cross_matrix(n);
+    block.topLeftCorner<3, 3>() += normal * nn + shear * tangential;
+    block.topRightCorner<3, 3>() += cross;
+    block.bottomLeftCorner<3, 3>() -= cross;
+    block.bottomRightCorner<3, 3>() += turn * tangential;
 }
 
-void assemble_matrix(const State& s, const Evaluation& e, ResistanceMatrix& matrix)
+void assemble_matrix(const State& s, const Evaluation& e, Workspace::Buffers& b)
 {
+    ResistanceMatrix& matrix = b.matrix;
     matrix.diagonal.resize(s.size());
     for (int i = 0; i < s.size(); ++i) matrix.diagonal[i] = drag(s, e.model, i).asDiagonal();
     matrix.pairs.clear();
     for (const PairState& p : e.pairs) {
-        const auto& r = p.resistance;
-        if (r.xa == 0) continue;  // repulsion alone
-        add_diagonal(r, p.pair.normal, matrix.diagonal[p.pair.i], matrix.diagonal[p.pair.j]);
-        matrix.pairs.push_back({p.pair.i, p.pair.j, p.pair.candidate, p.pair.normal, r.xa, r.ya,
-                                r.yb11, r.yb21, r.yc12});
+        if (p.factors.L == 0) continue;  // repulsion alone
+        const BlockCoefficients& c = b.coefficients[p.pair.candidate];
+        const auto [L, l] = p.factors;
+        const Vec3& n = p.pair.normal;
+        add_diagonal(n, L * c.xa, l * c.ya, l * c.yb11, l * c.yc11, matrix.diagonal[p.pair.i]);
+        add_diagonal(n, L * c.xa, l * c.ya, -l * c.yb21, l * c.yc22, matrix.diagonal[p.pair.j]);
+        matrix.pairs.push_back({p.pair.i, p.pair.j, p.pair.candidate, n, L * c.xa, l * c.ya,
+                                l * c.yb11, l * c.yb21, l * c.yc12});
     }
 }
 
-// In the limit of vanishing drag the forces balance only if sum a_i V_i = 0.
-void remove_drift(const State& s, Velocities& v)
-{
-    Vec3 drift = Vec3::Zero();
-    double weight = 0;
-    for (int i = 0; i < s.size(); ++i) {
-        drift += s.radius[i] * v[i].head<3>();
-        weight += s.radius[i];
-    }
-    for (Vec6& one : v) one.head<3>() -= drift / weight;
-}
+/// Loads of the force balance and what the shear stress needs of them.
+struct Loads {
+    double affine = 0;        // V eta_s + Ehat:R_SE:Ehat
+    double first_moment = 0;  // sum of sym(d, F)_xy of contacts and repulsion
+};
 
-void solve_columns(const State& s, Workspace::Buffers& b, Evaluation& e)
+// An affine flow acts only through the relative velocity r n.grad U, so that the sums over the
+// resistance functions G, H, M that stress control needs are multiples of A and B (identities of
+// Jeffrey & Onishi's and Jeffrey's functions, tested in tests/engine): with e = Ehat n, s = a_i +
+// a_j,
+//   R_FE:Ehat = s XA (n.e) n + s YA (e - (n.e) n), s YB e x n;
+//   Ehat:R_SE:Ehat = s^2 XA (n.e)^2 + s^2 YA (e.e - (n.e)^2).
+Loads assemble_loads(const State& s, const Evaluation& e, Workspace::Buffers& b)
 {
-    std::vector<const Velocities*> right;
-    std::vector<Velocities*> solutions;
-    for (std::size_t c = 0; c < column_names.size(); ++c) {
-        if (c == column_dashpot && !uses_dashpot(e.model)) {
-            e.column[c].assign(s.size(), Vec6::Zero());
-            continue;
-        }
-        right.push_back(&b.loads[c]);
-        solutions.push_back(&e.column[c]);
-    }
-    b.solver.factorise(b.matrix);
-    b.solver.solve(right, solutions);
-    if (!e.model.background_drag)
-        for (Velocities* v : solutions) remove_drift(s, *v);
-}
-
-Mat3 sum_of(const PairStresslet& stresslet)
-{
-    return stresslet.on_i + stresslet.on_j;
-}
-
-// Visits the stress of every pair: visit(part, pair, per unit rate, independent of the rate), each
-// with the shares of both particles.
-template <class Visit>
-void visit_pair_stress(const State& s, const Evaluation& e, const Visit& visit)
-{
-    const PairStresslet none{Mat3::Zero(), Mat3::Zero()};
-    auto virial = [&](const Pair& pair, const Vec3& force) {
-        const double share = s.radius[pair.i] / (s.radius[pair.i] + s.radius[pair.j]);
-        const Mat3 moment = sym(pair.separation, force);
-        return PairStresslet{share * moment, (1 - share) * moment};
+    b.unit_load.assign(s.size(), Vec6::Zero());
+    b.fixed_load.assign(s.size(), Vec6::Zero());
+    Loads result;
+    result.affine = solvent_resistance(s, e.model);
+    const auto shear_moment = [](const Vec3& d, const Vec3& f) {
+        return 0.5 * (d.x() * f.y() + d.y() * f.x());
     };
     for (const PairState& p : e.pairs) {
-        const Pair& pair = p.pair;
-        if (p.repulsion != 0)
-            visit(repulsion_xF, pair, none, virial(pair, -p.repulsion * pair.normal));
-        auto gather = [&](Column c) {
-            return PairVelocities{e.column[c][pair.i], e.column[c][pair.j]};
-        };
+        const Vec3& n = p.pair.normal;
+        if (p.repulsion != 0) {
+            const Vec3 force = -p.repulsion * n;
+            b.fixed_load[p.pair.i].head<3>() += force;
+            b.fixed_load[p.pair.j].head<3>() -= force;
+            result.first_moment += shear_moment(p.pair.separation, force);
+        }
         if (p.dashpot) {
-            auto force = [&](const PairVelocities& v) -> Vec3 {
-                return -lubrication::resistance_times(p.resistance, pair.normal, v.i, v.j).force_i;
-            };
-            const PairVelocities hydro = gather(column_hydro), dash = gather(column_dashpot),
-                                 contact = gather(column_contact), rep = gather(column_repulsion);
-            const PairVelocities unit = with_image(
-                {hydro.i + dash.i + ambient(s, pair.i), hydro.j + dash.j + ambient(s, pair.j)},
-                pair, s, 1);
-            visit(dashpot_xF, pair, virial(pair, force(unit)),
-                  virial(pair, force({contact.i + rep.i, contact.j + rep.j})));
+            add(b.unit_load, p.pair, dashpot_unit_load(s, p));
             continue;
         }
-        if (p.resistance.xa == 0) continue;
-        auto stresslet = [&](Column c) {
-            return lubrication::velocity_stresslet(p.resistance, pair.normal, e.column[c][pair.i],
-                                                   e.column[c][pair.j]);
-        };
-        visit(hydro_RSE, pair,
-              lubrication::strain_stresslet(p.resistance, pair.normal, unit_strain_rate()), none);
-        visit(hydro_RSU, pair, stresslet(column_hydro), none);
-        if (uses_dashpot(e.model)) visit(dashpot_RSU, pair, stresslet(column_dashpot), none);
-        visit(contact_RSU, pair, none, stresslet(column_contact));
-        visit(repulsion_RSU, pair, none, stresslet(column_repulsion));
+        if (p.factors.L == 0) continue;
+        const BlockCoefficients& c = b.coefficients[p.pair.candidate];
+        const double sum = s.radius[p.pair.i] + s.radius[p.pair.j];
+        const Vec3 strain(0.5 * n.y(), 0.5 * n.x(), 0);
+        const double xa = sum * p.factors.L * c.xa, l = sum * p.factors.l;
+        const double normal = n.x() * n.y();
+        const Vec3 tangential = strain - normal * n, twist = strain.cross(n);
+        const Vec3 force = xa * normal * n + l * c.ya * tangential;
+        add(b.unit_load, p.pair, {force, l * c.yb11 * twist, -force, l * c.yb21 * twist});
+        result.affine += sum * (xa * normal * normal + l * c.ya * tangential.squaredNorm());
     }
-    for (const ContactLoad& c : e.contacts)
-        visit(contact_xF, e.pairs[c.pair].pair, none, virial(e.pairs[c.pair].pair, c.force_on_i));
+    for (const ContactLoad& c : e.contacts) {
+        const Pair& pair = e.pairs[c.pair].pair;
+        add(b.fixed_load, pair, {c.force_on_i, c.torque_on_i, -c.force_on_i, c.torque_on_j});
+        result.first_moment += shear_moment(pair.separation, c.force_on_i);
+    }
+    return result;
 }
 
-// eqs. 2 and 3 of the paper
-void find_rate_and_stress(const State& s, Evaluation& e)
+// b = fixed + rate * unit
+Velocities combined(const Velocities& fixed, double rate, const Velocities& unit)
 {
-    StressParts unit, fixed;
-    unit.fill(Mat3::Zero());
-    fixed.fill(Mat3::Zero());
-    visit_pair_stress(s, e,
-                      [&](StressPart part, const Pair&, const PairStresslet& per_rate,
-                          const PairStresslet& free) {
-                          unit[part] += sum_of(per_rate);
-                          fixed[part] += sum_of(free);
-                      });
-    const double volume = s.box.volume();
-    const double viscosity = e.model.einstein ? 1 + 2.5 * volume_fraction(s) : 1;
-    unit[solvent] = 2 * viscosity * volume * unit_strain_rate();
-    double unit_shear = 0, fixed_shear = 0;
-    for (std::size_t p = 0; p < unit.size(); ++p) {
-        unit_shear += unit[p](flow, gradient) / volume;
-        fixed_shear += fixed[p](flow, gradient) / volume;
-    }
-    if (const auto* rate = std::get_if<ImposedRate>(&e.control))
+    Velocities sum(fixed);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += rate * unit[i];
+    return sum;
+}
+
+// One solve: at an imposed rate, or by the rank-one form of stress control.
+void solve_at_once(const State& s, const Loads& loads, Workspace::Buffers& b, Evaluation& e)
+{
+    e.nonaffine = b.history.guess(s.time);
+    if (const auto* rate = std::get_if<ImposedRate>(&e.control)) {
         e.shear_rate = rate->value;
-    else
-        e.shear_rate = (std::get<ImposedStress>(e.control).value - fixed_shear) / unit_shear;
-    if (!std::isfinite(e.shear_rate))
-        throw Error(ErrorKind::numerics, "", "the shear rate is not finite");
-    for (std::size_t p = 0; p < unit.size(); ++p)
-        e.stress[p] = (e.shear_rate * unit[p] + fixed[p]) / volume;
-}
-
-void superpose(const State& s, Evaluation& e)
-{
-    e.nonaffine.resize(s.size());
-    bool finite = true;
-    for (int i = 0; i < s.size(); ++i) {
-        e.nonaffine[i] = e.shear_rate * (e.column[column_hydro][i] + e.column[column_dashpot][i]) +
-                         e.column[column_contact][i] + e.column[column_repulsion][i];
-        finite = finite && e.nonaffine[i].allFinite();
+        e.solve = b.solver.solve({b.matrix}, combined(b.fixed_load, rate->value, b.unit_load),
+                                 e.nonaffine);
+    } else {
+        const double free =
+            std::get<ImposedStress>(e.control).value * s.box.volume() - loads.first_moment;
+        e.solve =
+            b.solver.solve({b.matrix, &b.unit_load, 1 / loads.affine},
+                           combined(b.fixed_load, free / loads.affine, b.unit_load), e.nonaffine);
+        e.shear_rate = (free + dot(b.unit_load, e.nonaffine)) / loads.affine;
     }
-    if (!finite) throw Error(ErrorKind::numerics, "", "a velocity is not finite");
+    b.history.remember(s.time, e.nonaffine);
+    if (!e.model.background_drag) remove_drift(s, e.nonaffine);
 }
 
+// Volume times the shear stress x F of the dashpots at velocities V + rate U_inf.
+double dashpot_moment(const State& s, const Evaluation& e, const Velocities& v, double rate)
+{
+    double sum = 0;
+    for (const PairState& p : e.pairs) {
+        if (!p.dashpot) continue;
+        const PairVelocities w = with_image(
+            {v[p.pair.i] + rate * ambient(s, p.pair.i), v[p.pair.j] + rate * ambient(s, p.pair.j)},
+            p.pair, s, rate);
+        const Vec3 force =
+            -lubrication::resistance_times(resistance(s, p), p.pair.normal, w.i, w.j).force_i;
+        sum += sym(p.pair.separation, force)(flow, gradient);
+    }
+    return sum;
+}
+
+// Stress control with dashpots: a solution per unit rate and one that is free of the rate.
+void solve_twice(const State& s, const Loads& loads, Workspace::Buffers& b, Evaluation& e)
+{
+    e.solve = b.solver.solve({b.matrix}, b.unit_load, b.unit_velocity);
+    const SolveReport second = b.solver.solve({b.matrix}, b.fixed_load, b.fixed_velocity);
+    e.solve.iterations += second.iterations;
+    e.solve.residual = std::max(e.solve.residual, second.residual);
+    e.solve.fell_back = e.solve.fell_back || second.fell_back;
+    if (!e.model.background_drag) {
+        remove_drift(s, b.unit_velocity);
+        remove_drift(s, b.fixed_velocity);
+    }
+    // R_SU holds the pairs with a gap: their load per unit rate is that of the strain alone
+    Velocities strain_load(s.size(), Vec6::Zero());
+    for (const PairState& p : e.pairs)
+        if (!p.dashpot)
+            add(strain_load, p.pair,
+                lubrication::strain_load(resistance(s, p), p.pair.normal, unit_strain_rate()));
+    const double unit =
+        loads.affine - dot(strain_load, b.unit_velocity) + dashpot_moment(s, e, b.unit_velocity, 1);
+    const double fixed = loads.first_moment - dot(strain_load, b.fixed_velocity) +
+                         dashpot_moment(s, e, b.fixed_velocity, 0);
+    e.shear_rate = (std::get<ImposedStress>(e.control).value * s.box.volume() - fixed) / unit;
+    e.nonaffine = combined(b.fixed_velocity, e.shear_rate, b.unit_velocity);
+}
+
+}
+
+Evaluation prepare(const State& state, const Model& model, const Control& control,
+                   Workspace::Buffers& b)
+{
+    update_neighbours(state, model, b);
+    Evaluation e;
+    e.model = model;
+    e.control = control;
+    const Stiffness k = stiffness(model, control);
+    const std::vector<Pair> pairs = find_pairs(state, interaction_range(model), b.neighbours);
+    e.pairs.reserve(pairs.size());
+    for (const Pair& pair : pairs) e.pairs.push_back(pair_state(pair, state, model, k));
+    e.contacts = contact_loads(e.pairs, state, model, k);
+    assemble_matrix(state, e, b);
+    return e;
+}
+
+void complete(const State& state, Evaluation& e)
+{
+    bool finite = std::isfinite(e.shear_rate);
+    for (const Vec6& v : e.nonaffine) finite = finite && v.allFinite();
+    if (!finite) throw Error(ErrorKind::numerics, "", "the shear rate or a velocity is not finite");
+    e.motion.clear();
+    e.motion.reserve(e.contacts.size());
+    for (const ContactLoad& c : e.contacts)
+        e.motion.push_back(relative_motion(state, e, e.pairs[c.pair].pair));
+}
+
+Evaluation evaluate(const State& state, const Model& model, const Control& control,
+                    Workspace& workspace)
+{
+    Workspace::Buffers& b = workspace.buffers();
+    Evaluation e = prepare(state, model, control, b);
+    const Loads loads = assemble_loads(state, e, b);
+    if (uses_dashpot(model) && std::holds_alternative<ImposedStress>(control))
+        solve_twice(state, loads, b, e);
+    else
+        solve_at_once(state, loads, b, e);
+    complete(state, e);
+    return e;
+}
+
+std::vector<Pair> touching_pairs(const State& state, const Model& model, Workspace& workspace)
+{
+    Workspace::Buffers& b = workspace.buffers();
+    update_neighbours(state, model, b);
+    return find_pairs(state, 0, b.neighbours);
+}
+
+Velocities total_velocities(const State& state, const Evaluation& e)
+{
+    Velocities v(state.size());
+    for (int i = 0; i < state.size(); ++i) v[i] = e.nonaffine[i] + e.shear_rate * ambient(state, i);
+    return v;
 }
 
 ContactMotion relative_motion(const State& s, const Evaluation& e, const Pair& pair)
@@ -274,56 +350,11 @@ ContactMotion relative_motion(const State& s, const Evaluation& e, const Pair& p
     return {relative - relative.dot(n) * n, harmonic * (vj.tail<3>() - vi.tail<3>()).cross(n)};
 }
 
-std::vector<Pair> touching_pairs(const State& state, const Model& model, Workspace& workspace)
+lubrication::PairResistance resistance(const State& s, const PairState& p)
 {
-    Workspace::Buffers& b = workspace.buffers();
-    update_neighbours(state, model, b);
-    return find_pairs(state, 0, b.neighbours);
-}
-
-Mat3 Evaluation::total_stress() const
-{
-    Mat3 sum = Mat3::Zero();
-    for (const Mat3& part : stress) sum += part;
-    return sum;
-}
-
-Evaluation evaluate(const State& state, const Model& model, const Control& control,
-                    Workspace& workspace)
-{
-    Workspace::Buffers& b = workspace.buffers();
-    update_neighbours(state, model, b);
-    Evaluation e;
-    e.model = model;
-    e.control = control;
-    const Stiffness k = stiffness(model, control);
-    for (const Pair& pair : find_pairs(state, interaction_range(model), b.neighbours))
-        e.pairs.push_back(pair_state(pair, state, model, k));
-    e.contacts = contact_loads(e.pairs, state, model, k);
-    assemble_loads(state, e, b.loads);
-    assemble_matrix(state, e, b.matrix);
-    solve_columns(state, b, e);
-    find_rate_and_stress(state, e);
-    superpose(state, e);
-    for (const ContactLoad& c : e.contacts)
-        e.motion.push_back(relative_motion(state, e, e.pairs[c.pair].pair));
-    return e;
-}
-
-std::vector<Mat3> particle_stress(const State& state, const Evaluation& e)
-{
-    std::vector<Mat3> result(state.size(), Mat3::Zero());
-    if (e.model.einstein)
-        for (int i = 0; i < state.size(); ++i)
-            result[i] =
-                20 * pi / 3 * std::pow(state.radius[i], 3) * e.shear_rate * unit_strain_rate();
-    visit_pair_stress(state, e,
-                      [&](StressPart, const Pair& pair, const PairStresslet& per_rate,
-                          const PairStresslet& free) {
-                          result[pair.i] += e.shear_rate * per_rate.on_i + free.on_i;
-                          result[pair.j] += e.shear_rate * per_rate.on_j + free.on_j;
-                      });
-    return result;
+    return lubrication::scaled(
+        lubrication::pair_coefficients(s.radius[p.pair.i], s.radius[p.pair.j]), p.factors.L,
+        p.factors.l);
 }
 
 }

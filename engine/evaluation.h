@@ -1,19 +1,29 @@
-// engine/evaluation.h -- velocities, shear rate and stress of a state under an imposed stress or rate.
+// engine/evaluation.h -- velocities, shear rate and stress of a state under an imposed stress or
+// rate.
 //
-// Solves  R_FU V = F_C + F_R + rate R_FE:Ehat [+ rate F_dash]  with one factorisation and one solution
-// per right-hand side, and finds the rate that makes the shear stress the imposed one (Mari et al.,
-// Phys. Rev. E 91, 052302, 2015, eqs. 1-4):
-//   rate = (sigma - S_fixed,xy)/S_unit,xy,  S = rate S_unit + S_fixed.
-// V is the velocity relative to the ambient flow (non-affine), so V = rate (V_hydro + V_dashpot) +
-// V_contact + V_repulsion. Everything is a function of the state.
-// Tested: S_xy equals the imposed stress, power balance, reciprocity, image and label invariance, and
-// 22 configurations with known answers.
+// Solves  R_FU V = F_C + F_R + rate R_FE:Ehat [+ rate F_dash]  and finds the rate that makes the
+// shear stress the imposed one (Mari et al., Phys. Rev. E 91, 052302, 2015, eqs. 1-4). V is the
+// velocity relative to the ambient flow (non-affine). Everything is a function of the state.
+//
+// evaluate: velocities and rate alone, for stepping, in one solve. With f = R_FE:Ehat, C0 = V eta_s
+// +
+//   Ehat:R_SE:Ehat and S_F the shear part of the first moments of the rate-free forces, reciprocity
+//   (R_SU = R_FE^T) turns eq. 3 into rate = (sigma V - S_F + f.V)/C0, hence
+//   (R_FU - f f^T/C0) V = F_C + F_R + f (sigma V - S_F)/C0,
+//   symmetric positive definite because the dissipation is positive. The dashpot variant, whose
+//   torques break the reciprocity slightly, takes two solves.
+// evaluate_in_detail: as in the paper, one factorisation, one solution per force, and every
+// component
+//   of the stress: rate = (sigma - S_fixed,xy)/S_unit,xy, S = rate S_unit + S_fixed.
+// Tested: both agree, S_xy equals the imposed stress, power balance, image and label invariance,
+// and 22 configurations with known answers.
 #pragma once
 #include "engine/forces/contact.h"
 #include "engine/frame.h"
 #include "engine/lubrication/pair_resistance.h"
 #include "engine/model.h"
 #include "engine/pairs.h"
+#include "engine/solver.h"
 #include "engine/state.h"
 #include "engine/types.h"
 
@@ -24,33 +34,15 @@
 
 namespace sigmaflow {
 
-/// Right-hand sides of the force balance; hydro and dashpot are per unit shear rate.
-enum Column { column_hydro, column_dashpot, column_contact, column_repulsion };
-inline constexpr std::array<std::string_view, 4> column_names{"hydro", "dashpot", "contact",
-                                                              "repulsion"};
-
-/// Parts of the stress; xF: first moment of a pair force, RSU, RSE: stresslets.
-enum StressPart {
-    solvent, hydro_RSE, hydro_RSU, dashpot_RSU, dashpot_xF, contact_xF, contact_RSU, repulsion_xF,
-    repulsion_RSU
-};
-inline constexpr std::array<std::string_view, 9> stress_part_names{
-    "solvent",    "hydro_RSE",   "hydro_RSU",    "dashpot_RSU",  "dashpot_xF",
-    "contact_xF", "contact_RSU", "repulsion_xF", "repulsion_RSU"};
-using StressParts = std::array<Mat3, stress_part_names.size()>;
-
-/// Velocity, then angular velocity of every particle [n].
-using Velocities = std::vector<Vec6>;
-
 /// A pair in range with all that acts in it.
 struct PairState {
     Pair pair;
-    lubrication::PairResistance resistance;  // zero beyond the lubrication range
-    double repulsion = 0;                    // [eta0 rate0 a^2]
+    lubrication::GapFactors factors{0, 0};  // zero beyond the lubrication range
+    double repulsion = 0;                   // [eta0 rate0 a^2]
     bool dashpot = false;  // touching, with the A, B, C block on the total velocities
 };
 
-/// Relative motion at a contact.
+/// Relative motion of the surfaces of a pair.
 struct ContactMotion {
     Vec3 slip, roll;  // tangential surface velocity, rolling velocity [a rate0]
 };
@@ -59,21 +51,48 @@ struct Evaluation {
     Model model;
     Control control;
     double shear_rate = 0;
-    std::vector<PairState> pairs;        // sorted by (i, j)
-    std::vector<ContactLoad> contacts;   // the touching ones, same order
-    std::vector<ContactMotion> motion;   // one per contact
+    std::vector<PairState> pairs;       // sorted by (i, j)
+    std::vector<ContactLoad> contacts;  // the touching ones, same order
+    std::vector<ContactMotion> motion;  // one per contact
+    Velocities nonaffine;               // V = (U - U_inf, Omega - w_inf)
+    SolveReport solve;
+};
+
+/// Right-hand sides of the force balance; hydro and dashpot are per unit shear rate.
+enum Column { column_hydro, column_dashpot, column_contact, column_repulsion };
+inline constexpr std::array<std::string_view, 4> column_names{"hydro", "dashpot", "contact",
+                                                              "repulsion"};
+
+/// Parts of the stress; xF: first moment of a pair force, RSU, RSE: stresslets.
+enum StressPart {
+    solvent,
+    hydro_RSE,
+    hydro_RSU,
+    dashpot_RSU,
+    dashpot_xF,
+    contact_xF,
+    contact_RSU,
+    repulsion_xF,
+    repulsion_RSU
+};
+inline constexpr std::array<std::string_view, 9> stress_part_names{
+    "solvent",    "hydro_RSE",   "hydro_RSU",    "dashpot_RSU",  "dashpot_xF",
+    "contact_xF", "contact_RSU", "repulsion_xF", "repulsion_RSU"};
+using StressParts = std::array<Mat3, stress_part_names.size()>;
+
+struct DetailedEvaluation {
+    Evaluation evaluation;
     std::array<Velocities, column_names.size()> column;  // relative to the ambient flow
-    Velocities nonaffine;                // V = (U - U_inf, Omega - w_inf)
-    StressParts stress;                  // at the shear rate; they add up to the total
+    StressParts stress;  // at the shear rate; they add up to the total
 
     Mat3 total_stress() const;
 };
 
-/// Buffers, neighbour list and factor that are kept between evaluations. Holds nothing that changes a
-/// result beyond rounding. One per thread.
+/// Buffers, neighbour list and solvers that are kept between evaluations: nothing that changes a
+/// result beyond the tolerance of the solver. One per thread.
 class Workspace {
 public:
-    Workspace();
+    explicit Workspace(const SolverSettings& solver = {});
     ~Workspace();
     Workspace(Workspace&&) noexcept;
     Workspace& operator=(Workspace&&) noexcept;
@@ -85,10 +104,12 @@ private:
     std::unique_ptr<Buffers> buffers_;
 };
 
-/// Errors: input (stiffness rule against control), numerics (resistance matrix not positive definite,
-/// coinciding particles, a value that is not finite).
+/// Errors: input (stiffness rule against control), numerics (resistance matrix not positive
+/// definite, coinciding particles, a value that is not finite).
 Evaluation evaluate(const State& state, const Model& model, const Control& control,
                     Workspace& workspace);
+DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
+                                      const Control& control, Workspace& workspace);
 
 /// The touching pairs of a state, sorted by (i, j).
 std::vector<Pair> touching_pairs(const State& state, const Model& model, Workspace& workspace);
@@ -96,11 +117,13 @@ std::vector<Pair> touching_pairs(const State& state, const Model& model, Workspa
 /// U and Omega at the positions of the state.
 Velocities total_velocities(const State& state, const Evaluation& evaluation);
 
-/// Relative motion of the surfaces of a pair, touching or not.
 ContactMotion relative_motion(const State& state, const Evaluation& evaluation, const Pair& pair);
 
+/// All resistance scalars of a pair in range.
+lubrication::PairResistance resistance(const State& state, const PairState& pair);
+
 /// S_i with 2 eta0 E_inf + sum S_i/volume = total stress; x F shared as a_i : a_j [sigma0 a^3].
-std::vector<Mat3> particle_stress(const State& state, const Evaluation& evaluation);
+std::vector<Mat3> particle_stress(const State& state, const DetailedEvaluation& detailed);
 
 /// Forces on i in eta0 rate0 a^2: hydrodynamic (block and R_FE), dashpot, contact, repulsion.
 struct PairForces {
@@ -113,9 +136,9 @@ struct PowerBalance {
     double input = 0, solvent = 0, drag = 0, torque_residual = 0, lubrication = 0, dashpot = 0,
            contact = 0, repulsion = 0;
 };
-PowerBalance power_balance(const State& state, const Evaluation& evaluation);
+PowerBalance power_balance(const State& state, const DetailedEvaluation& detailed);
 
-Sample make_sample(const State& state, const Evaluation& evaluation);
-Frame make_frame(const State& state, const Evaluation& evaluation);
+Sample make_sample(const State& state, const DetailedEvaluation& detailed);
+Frame make_frame(const State& state, const DetailedEvaluation& detailed);
 
 }

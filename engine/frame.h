@@ -1,8 +1,8 @@
 // engine/frame.h -- one instant of a run as it is stored, plotted and drawn.
 //
 // Sample: the scalars of the time series. Frame: everything per particle and per contact.
-// `sample_fields` is the only list of the scalars: their names are the CSV columns, the HDF5 datasets
-// and the words of the plots.
+// `sample_fields` is the only list of the scalars: their names are the CSV columns, the HDF5
+// datasets and the words of the plots.
 #pragma once
 #include "engine/state.h"
 #include "engine/types.h"
@@ -34,9 +34,9 @@ std::span<const SampleField> sample_fields();
 /// One touching pair as it is drawn and stored.
 struct ContactForce {
     int i = 0, j = 0;
-    Vec3 start, end;        // centre of i and of the nearest image of j [a]
-    double xi = 0;          // reduced gap [-], <= 0
-    double normal_force = 0;  // repulsive spring force [F*], >= 0
+    Vec3 start, end;                       // centre of i and of the nearest image of j [a]
+    double xi = 0;                         // reduced gap [-], <= 0
+    double normal_force = 0;               // repulsive spring force [F*], >= 0
     Vec3 tangential_force = Vec3::Zero();  // friction on i [F*]
     bool sliding = false, frictional = false;
 };

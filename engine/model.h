@@ -17,17 +17,17 @@ struct Model {
     double lubrication_delta = 1e-3;  // regularisation of the gap [-] > 0
     double lubrication_range = 0.5;   // pairs with xi below it [-] > 0
     ContactHydrodynamics contact_hydrodynamics = ContactHydrodynamics::lubrication;
-    double contact_relaxation_time = 0;                      // [1/rate0] >= 0; 0: coefficient 1/delta
-    double normal_stiffness = 2000 / reference_force;        // [F*/a] >= 0
-    double tangential_stiffness = 1000 / reference_force;    // [F*/a] >= 0
+    double contact_relaxation_time = 0;                    // [1/rate0] >= 0; 0: coefficient 1/delta
+    double normal_stiffness = 2000 / reference_force;      // [F*/a] >= 0
+    double tangential_stiffness = 1000 / reference_force;  // [F*/a] >= 0
     StiffnessScale stiffness_scale = StiffnessScale::stress;  // stress: times sigma/sigma0
-    double friction_static = 1;                              // [-] >= friction_dynamic
-    double friction_dynamic = 1;                             // [-] >= 0
-    double critical_load = 0;                                // [F*] >= 0
-    double rolling_stiffness = 0;                            // [F*/a] >= 0, scaled like the others
-    double rolling_friction = 0;                             // [-] >= 0
-    double repulsion = 1;                                    // [F*] >= 0
-    double debye_length = 0.02;                              // [a] > 0
+    double friction_static = 1;                               // [-] >= friction_dynamic
+    double friction_dynamic = 1;                              // [-] >= 0
+    double critical_load = 0;                                 // [F*] >= 0
+    double rolling_stiffness = 0;                             // [F*/a] >= 0, scaled like the others
+    double rolling_friction = 0;                              // [-] >= 0
+    double repulsion = 1;                                     // [F*] >= 0
+    double debye_length = 0.02;                               // [a] > 0
     RepulsionAmplitude repulsion_amplitude = RepulsionAmplitude::reduced_radius;
     double repulsion_range = 0.5;  // pairs with xi below it [-] > 0
     bool einstein = true;          // 5/2 phi in the solvent stress

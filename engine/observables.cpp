@@ -30,7 +30,7 @@ double spin_residual(const PairLoad& load, const Pair& pair, double rate)
 PairLoad dashpot_load(const State& s, const Evaluation& e, const PairState& p)
 {
     const auto [vi, vj] = moving(s, e, p.pair);
-    return negative(lubrication::resistance_times(p.resistance, p.pair.normal, vi, vj));
+    return negative(lubrication::resistance_times(resistance(s, p), p.pair.normal, vi, vj));
 }
 
 void add_pair_power(const State& s, const Evaluation& e, const PairState& p, PowerBalance& balance)
@@ -48,11 +48,11 @@ void add_pair_power(const State& s, const Evaluation& e, const PairState& p, Pow
     }
     const PairVelocities v{e.nonaffine[p.pair.i], e.nonaffine[p.pair.j]};
     const Mat3 E = e.shear_rate * unit_strain_rate();
-    const auto stresslet = lubrication::strain_stresslet(p.resistance, p.pair.normal, E);
-    balance.lubrication +=
-        power(lubrication::resistance_times(p.resistance, p.pair.normal, v.i, v.j), v) -
-        2 * power(lubrication::strain_load(p.resistance, p.pair.normal, E), v) +
-        (stresslet.on_i + stresslet.on_j).cwiseProduct(E).sum();
+    const auto r = resistance(s, p);
+    const auto stresslet = lubrication::strain_stresslet(r, p.pair.normal, E);
+    balance.lubrication += power(lubrication::resistance_times(r, p.pair.normal, v.i, v.j), v) -
+                           2 * power(lubrication::strain_load(r, p.pair.normal, E), v) +
+                           (stresslet.on_i + stresslet.on_j).cwiseProduct(E).sum();
 }
 
 double nonaffine_speed(const Evaluation& e, int i)
@@ -60,13 +60,6 @@ double nonaffine_speed(const Evaluation& e, int i)
     return e.nonaffine[i].head<3>().norm() / std::abs(e.shear_rate);
 }
 
-}
-
-Velocities total_velocities(const State& state, const Evaluation& e)
-{
-    Velocities v(state.size());
-    for (int i = 0; i < state.size(); ++i) v[i] = e.nonaffine[i] + e.shear_rate * ambient(state, i);
-    return v;
 }
 
 std::vector<PairForces> pair_forces(const State& state, const Evaluation& e)
@@ -81,20 +74,21 @@ std::vector<PairForces> pair_forces(const State& state, const Evaluation& e)
             f.dashpot = dashpot_load(state, e, p).force_i;
         else
             f.lubrication =
-                lubrication::strain_load(p.resistance, p.pair.normal, E).force_i -
-                lubrication::resistance_times(p.resistance, p.pair.normal, vi, vj).force_i;
+                lubrication::strain_load(resistance(state, p), p.pair.normal, E).force_i -
+                lubrication::resistance_times(resistance(state, p), p.pair.normal, vi, vj).force_i;
         forces.push_back(f);
     }
     for (const ContactLoad& c : e.contacts) forces[c.pair].contact = c.force_on_i;
     return forces;
 }
 
-PowerBalance power_balance(const State& state, const Evaluation& e)
+PowerBalance power_balance(const State& state, const DetailedEvaluation& d)
 {
+    const Evaluation& e = d.evaluation;
     PowerBalance balance;
     const double volume = state.box.volume();
-    balance.input = volume * e.shear_rate * e.total_stress()(flow, gradient);
-    balance.solvent = volume * e.shear_rate * e.stress[solvent](flow, gradient);
+    balance.input = volume * e.shear_rate * d.total_stress()(flow, gradient);
+    balance.solvent = volume * e.shear_rate * d.stress[solvent](flow, gradient);
     for (int i = 0; i < state.size(); ++i)
         balance.drag += drag(state, e.model, i).dot(e.nonaffine[i].cwiseAbs2());
     for (const PairState& p : e.pairs) add_pair_power(state, e, p, balance);
@@ -140,13 +134,14 @@ std::span<const SampleField> sample_fields()
     return fields;
 }
 
-Sample make_sample(const State& state, const Evaluation& e)
+Sample make_sample(const State& state, const DetailedEvaluation& d)
 {
+    const Evaluation& e = d.evaluation;
     Sample s;
-    const Mat3 S = e.total_stress();
+    const Mat3 S = d.total_stress();
     auto shear = [&](std::initializer_list<StressPart> parts) {
         double sum = 0;
-        for (StressPart p : parts) sum += e.stress[p](flow, gradient);
+        for (StressPart p : parts) sum += d.stress[p](flow, gradient);
         return sum;
     };
     s.strain = state.strain;
@@ -178,14 +173,15 @@ Sample make_sample(const State& state, const Evaluation& e)
     return s;
 }
 
-Frame make_frame(const State& state, const Evaluation& e)
+Frame make_frame(const State& state, const DetailedEvaluation& d)
 {
+    const Evaluation& e = d.evaluation;
     Frame f;
     f.state = state;
-    f.sample = make_sample(state, e);
+    f.sample = make_sample(state, d);
     f.volume_fraction = volume_fraction(state);
     f.species = species(state);
-    f.particle_stress = particle_stress(state, e);
+    f.particle_stress = particle_stress(state, d);
     f.contact_number.assign(state.size(), 0);
     const Velocities total = total_velocities(state, e);
     for (int i = 0; i < state.size(); ++i) {

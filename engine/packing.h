@@ -1,8 +1,10 @@
 // engine/packing.h -- random start at exactly the asked volume fraction.
 //
-// 1. radii: 1 and size_ratio, small_volume_share of the solid volume in the small ones, or a given list
+// 1. radii: 1 and size_ratio, small_volume_share of the solid volume in the small ones, or a given
+// list
 // 2. a box of shape box_shape whose volume makes the volume fraction exact
-// 3. uniform random positions from a counter-based generator, radii times 1.01, steepest descent of the
+// 3. uniform random positions from a counter-based generator, radii times 1.01, steepest descent of
+// the
 //    overlap energy until min xi > -0.01; at the true radii no pair touches then.
 // Errors: input (ranges), numerics (no overlap-free packing within max_iterations).
 #pragma once
@@ -15,12 +17,12 @@
 namespace sigmaflow {
 
 struct PackingParameters {
-    int particles = 500;             // [1, 10^7]
-    double volume_fraction = 0.56;   // (0, 0.64]
-    double size_ratio = 1.4;         // large over small radius [1, 10]
+    int particles = 500;              // [1, 10^7]
+    double volume_fraction = 0.56;    // (0, 0.64]
+    double size_ratio = 1.4;          // large over small radius [1, 10]
     double small_volume_share = 0.5;  // share of the solid volume in small spheres [0, 1]
-    std::vector<double> radii;       // if not empty: these radii, in this order
-    Vec3 box_shape{1, 1, 1};         // ratios of the box lengths
+    std::vector<double> radii;        // if not empty: these radii, in this order
+    Vec3 box_shape{1, 1, 1};          // ratios of the box lengths
     std::uint64_t seed = 1;
     int max_iterations = 200000;
 };

@@ -1,13 +1,14 @@
 // engine/pairs.h -- neighbours across the sheared boundary, at a cost proportional to n.
 //
-// NeighbourList holds the pairs i < j that lie, or may soon lie, within the interaction range: those
-// with centre distance below range + skin at the positions of its last rebuild. Between rebuilds the
-// particles may move; `update` knows from the largest non-affine displacements and the strain whether
-// a pair could have come into range unseen, and rebuilds then. Candidates are sorted by (i, j).
+// NeighbourList holds the pairs i < j that lie, or may soon lie, within the interaction range:
+// those with centre distance below range + skin at the positions of its last rebuild. Between
+// rebuilds the particles may move; `update` knows from the largest non-affine displacements and the
+// strain whether a pair could have come into range unseen, and rebuilds then. Candidates are sorted
+// by (i, j).
 //
 // find_pairs: the candidates in range (xi < range), with nearest images, sorted by (i, j).
-// Cell list: Allen & Tildesley, Computer Simulation of Liquids (1987), section 5.3; sheared boundary:
-// Lees & Edwards, J. Phys. C 5, 1921 (1972). Tested against all pairs.
+// Cell list: Allen & Tildesley, Computer Simulation of Liquids (1987), section 5.3; sheared
+// boundary: Lees & Edwards, J. Phys. C 5, 1921 (1972). Tested against all pairs.
 #pragma once
 #include "engine/state.h"
 #include "engine/types.h"
@@ -17,9 +18,9 @@
 namespace sigmaflow {
 
 struct Pair {
-    int i, j;        // i < j
-    int image;       // the image of j moves with U_j + image * shear_rate * Ly e_x
-    int candidate;   // index into the neighbour list
+    int i, j;         // i < j
+    int image;        // the image of j moves with U_j + image * shear_rate * Ly e_x
+    int candidate;    // index into the neighbour list
     Vec3 separation;  // from i to the image of j [a]
     Vec3 normal;
     double distance, gap;  // [a]
@@ -44,10 +45,10 @@ private:
     void rebuild(const State& state, double range);
 
     std::vector<Candidate> candidates_;
-    State reference_;      // positions, box and strain at the last rebuild; no contacts
-    double range_ = -1;    // in xi
-    double reach_ = 0;     // largest centre distance of interest [a]
-    double skin_ = 0;      // [a]
+    State reference_;    // positions, box and strain at the last rebuild; no contacts
+    double range_ = -1;  // in xi
+    double reach_ = 0;   // largest centre distance of interest [a]
+    double skin_ = 0;    // [a]
 };
 
 /// All pairs i < j closer than `cutoff(a_i + a_j)` = (a_i + a_j)(1 + range/2) + skin, sorted.

@@ -28,9 +28,9 @@ constexpr Philox philox(Philox counter, std::array<std::uint32_t, 2> key)
 /// Uniform double in [0, 1) with 53 random bits.
 constexpr double uniform(std::uint64_t seed, std::uint32_t stream, std::uint64_t counter)
 {
-    const Philox r = philox({static_cast<std::uint32_t>(counter),
-                             static_cast<std::uint32_t>(counter >> 32), stream, 0},
-                            {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)});
+    const Philox r = philox(
+        {static_cast<std::uint32_t>(counter), static_cast<std::uint32_t>(counter >> 32), stream, 0},
+        {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)});
     const std::uint64_t bits = (std::uint64_t{r[1]} << 32 | r[0]) >> 11;
     return static_cast<double>(bits) * 0x1p-53;
 }

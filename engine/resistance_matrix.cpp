@@ -15,15 +15,21 @@ Mat6 off_diagonal(const PairBlock& p)
     return block;
 }
 
-void multiply(const ResistanceMatrix& m, const std::vector<Vec6>& v, std::vector<Vec6>& result)
+void multiply(const ResistanceMatrix& m, const Velocities& v, Velocities& result)
 {
     result.resize(v.size());
     for (int i = 0; i < m.size(); ++i) result[i].noalias() = m.diagonal[i] * v[i];
     for (const PairBlock& p : m.pairs) {
-        const Mat6 block = off_diagonal(p);
-        result[p.i].noalias() += block * v[p.j];
-        result[p.j].noalias() += block.transpose() * v[p.i];
+        result[p.i] += times(p, v[p.j]);
+        result[p.j] += transposed_times(p, v[p.i]);
     }
+}
+
+double dot(const Velocities& u, const Velocities& v)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) sum += u[i].dot(v[i]);
+    return sum;
 }
 
 }

@@ -1,203 +1,105 @@
 #include "engine/solver.h"
 
-#include "engine/error.h"
+#include "engine/cholesky.h"
+#include "engine/pcg.h"
 
-#include <cholmod.h>
-#include <cstring>
+#include <cmath>
+#include <optional>
 
 namespace sigmaflow {
 
-namespace {
+struct ResistanceSolver::Impl {
+    SolverSettings settings;
+    ConjugateGradients gradients;
+    Cholesky cholesky;
+    bool analysed = false;  // the pattern of the Cholesky factor is made when it is first needed
+    int particles = 0;
+    std::vector<Candidate> candidates;
+    Velocities scratch;
 
-constexpr int block = 6;
+    void factorise(const ResistanceMatrix& matrix)
+    {
+        if (!analysed) cholesky.set_pattern(particles, candidates);
+        analysed = true;
+        cholesky.factorise(matrix);
+    }
 
-void count_only(int, const char*, int, const char*) {}
-
-/// Where the entries of the lower triangle of each block lie in the values of the sparse matrix.
-struct Slots {
-    std::vector<int> diagonal;   // [n * 6]: first entry of each column, contiguous downwards
-    std::vector<int> candidate;  // [candidates * 6]: same for the block (row j, column i), i < j
+    void solve_with_factor(const ResistanceProblem& problem, const Velocities& b, Velocities& x);
+    double residual(const ResistanceProblem& problem, const Velocities& b, const Velocities& x);
 };
 
-}
-
-struct SpdSolver::Impl {
-    cholmod_common common;
-    cholmod_sparse* matrix = nullptr;
-    cholmod_factor* factor = nullptr;
-    cholmod_dense *right = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
-    Slots slots;
-    int n = 0;
-
-    Impl()
-    {
-        cholmod_start(&common);
-        common.supernodal = CHOLMOD_SUPERNODAL;
-        common.final_ll = 1;
-        common.print = 0;
-        common.error_handler = count_only;
-    }
-
-    ~Impl()
-    {
-        release_pattern();
-        cholmod_free_dense(&right, &common);
-        cholmod_free_dense(&solution, &common);
-        cholmod_free_dense(&work_y, &common);
-        cholmod_free_dense(&work_e, &common);
-        cholmod_finish(&common);
-    }
-
-    void release_pattern()
-    {
-        cholmod_free_sparse(&matrix, &common);
-        cholmod_free_factor(&factor, &common);
-    }
-
-    void check(bool good, const char* what) const
-    {
-        if (good && common.status >= CHOLMOD_OK) return;
-        throw Error(ErrorKind::numerics, "",
-                    std::string("CHOLMOD: ") + what + " failed (status " +
-                        std::to_string(common.status) + ")");
-    }
-
-    std::vector<int> particle_order(int particles, const std::vector<Candidate>& candidates);
-};
-
-// Fill-reducing order of the particles: AMD or METIS, whichever CHOLMOD finds better.
-std::vector<int> SpdSolver::Impl::particle_order(int particles,
-                                                 const std::vector<Candidate>& candidates)
+// x = R^-1 b + s R^-1 f with s = w f.R^-1 b/(1 - w f.R^-1 f)   (Sherman & Morrison 1950)
+void ResistanceSolver::Impl::solve_with_factor(const ResistanceProblem& problem,
+                                               const Velocities& b, Velocities& x)
 {
-    const std::size_t entries = candidates.size() + particles;
-    cholmod_sparse* graph =
-        cholmod_allocate_sparse(particles, particles, entries, 1, 1, -1, CHOLMOD_PATTERN, &common);
-    check(graph, "allocation");
-    auto* start = static_cast<int*>(graph->p);
-    auto* row = static_cast<int*>(graph->i);
-    int entry = 0;
-    std::size_t k = 0;
-    for (int i = 0; i < particles; ++i) {
-        start[i] = entry;
-        row[entry++] = i;
-        for (; k < candidates.size() && candidates[k].i == i; ++k) row[entry++] = candidates[k].j;
+    if (!problem.direction) {
+        cholesky.solve({&b}, {&x});
+        return;
     }
-    start[particles] = entry;
-    cholmod_factor* symbolic = cholmod_analyze(graph, &common);
-    cholmod_free_sparse(&graph, &common);
-    check(symbolic, "ordering");
-    const auto* permutation = static_cast<const int*>(symbolic->Perm);
-    std::vector<int> order(permutation, permutation + particles);
-    cholmod_free_factor(&symbolic, &common);
-    return order;
+    const Velocities& f = *problem.direction;
+    cholesky.solve({&b, &f}, {&x, &scratch});
+    const double s = problem.weight * dot(f, x) / (1 - problem.weight * dot(f, scratch));
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += s * scratch[i];
 }
 
-SpdSolver::SpdSolver() : impl_(std::make_unique<Impl>()) {}
-SpdSolver::~SpdSolver() = default;
-SpdSolver::SpdSolver(SpdSolver&&) noexcept = default;
-SpdSolver& SpdSolver::operator=(SpdSolver&&) noexcept = default;
+double ResistanceSolver::Impl::residual(const ResistanceProblem& problem, const Velocities& b,
+                                        const Velocities& x)
+{
+    multiply(problem.matrix, x, scratch);
+    const double s = problem.direction ? problem.weight * dot(*problem.direction, x) : 0;
+    double square = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        Vec6 r = b[i] - scratch[i];
+        if (problem.direction) r += s * (*problem.direction)[i];
+        square += r.squaredNorm();
+    }
+    const double size = dot(b, b);
+    return size > 0 ? std::sqrt(square / size) : 0;
+}
 
-void SpdSolver::set_pattern(int n, const std::vector<Candidate>& candidates)
+ResistanceSolver::ResistanceSolver(const SolverSettings& settings) : impl_(std::make_unique<Impl>())
+{
+    impl_->settings = settings;
+}
+ResistanceSolver::~ResistanceSolver() = default;
+ResistanceSolver::ResistanceSolver(ResistanceSolver&&) noexcept = default;
+ResistanceSolver& ResistanceSolver::operator=(ResistanceSolver&&) noexcept = default;
+
+void ResistanceSolver::set_pattern(int n, const std::vector<Candidate>& candidates)
+{
+    impl_->particles = n;
+    impl_->candidates = candidates;
+    impl_->analysed = false;
+    impl_->gradients.forget();
+}
+
+SolveReport ResistanceSolver::solve(const ResistanceProblem& problem, const Velocities& b,
+                                    Velocities& x)
 {
     Impl& s = *impl_;
-    s.release_pattern();
-    s.n = n;
-    const std::size_t size = static_cast<std::size_t>(n) * block;
-    const std::size_t entries =
-        candidates.size() * block * block + static_cast<std::size_t>(n) * (block * (block + 1) / 2);
-    s.matrix = cholmod_allocate_sparse(size, size, entries, 1, 1, -1, CHOLMOD_REAL, &s.common);
-    s.check(s.matrix, "allocation");
-    auto* start = static_cast<int*>(s.matrix->p);
-    auto* row = static_cast<int*>(s.matrix->i);
-    s.slots.diagonal.resize(size);
-    s.slots.candidate.resize(candidates.size() * block);
-    int entry = 0;
-    std::size_t first = 0;
-    for (int i = 0; i < n; ++i) {
-        std::size_t last = first;
-        while (last < candidates.size() && candidates[last].i == i) ++last;
-        for (int c = 0; c < block; ++c) {
-            start[i * block + c] = entry;
-            s.slots.diagonal[i * block + c] = entry;
-            for (int r = c; r < block; ++r) row[entry++] = i * block + r;
-            for (std::size_t k = first; k < last; ++k) {
-                s.slots.candidate[k * block + c] = entry;
-                for (int r = 0; r < block; ++r) row[entry++] = candidates[k].j * block + r;
-            }
-        }
-        first = last;
+    if (x.size() != b.size()) x.assign(b.size(), Vec6::Zero());
+    SolveReport report;
+    if (s.settings.kind == SolverKind::pcg) {
+        if (s.gradients.solve(problem, b, x, s.settings.tolerance, report)) return report;
+        report.fell_back = true;
     }
-    start[size] = entry;
-    const std::vector<int> order = s.particle_order(n, candidates);
-    std::vector<int> permutation(size);
-    for (int i = 0; i < n; ++i)
-        for (int c = 0; c < block; ++c) permutation[i * block + c] = order[i] * block + c;
-    s.common.nmethods = 1;
-    s.common.method[0].ordering = CHOLMOD_GIVEN;
-    s.factor = cholmod_analyze_p(s.matrix, permutation.data(), nullptr, 0, &s.common);
-    s.common.nmethods = 0;  // CHOLMOD's own choice for the next order
-    s.check(s.factor, "analysis");
+    s.factorise(problem.matrix);
+    s.solve_with_factor(problem, b, x);
+    report.residual = s.residual(problem, b, x);
+    return report;
 }
 
-void SpdSolver::factorise(const ResistanceMatrix& matrix)
+void ResistanceSolver::solve_directly(const ResistanceMatrix& matrix,
+                                      const std::vector<const Velocities*>& b,
+                                      const std::vector<Velocities*>& x)
 {
-    Impl& s = *impl_;
-    auto* value = static_cast<double*>(s.matrix->x);
-    std::memset(value, 0, s.matrix->nzmax * sizeof(double));
-    for (int i = 0; i < s.n; ++i)
-        for (int c = 0; c < block; ++c)
-            std::memcpy(value + s.slots.diagonal[i * block + c],
-                        matrix.diagonal[i].data() + c * block + c, (block - c) * sizeof(double));
-    for (const PairBlock& pair : matrix.pairs) {
-        // the lower triangle holds rows of j and columns of i: the transposed block
-        const Mat6 lower = off_diagonal(pair).transpose();
-        for (int c = 0; c < block; ++c)
-            std::memcpy(value + s.slots.candidate[pair.candidate * block + c],
-                        lower.data() + c * block, block * sizeof(double));
-    }
-    const int good = cholmod_factorize(s.matrix, s.factor, &s.common);
-    if (s.common.status == CHOLMOD_NOT_POSDEF) {
-        const auto* permutation = static_cast<const int*>(s.factor->Perm);
-        const int pivot = static_cast<int>(s.factor->minor);
-        const int particle = pivot < s.n * block ? permutation[pivot] / block : -1;
-        s.common.status = CHOLMOD_OK;
-        throw Error(ErrorKind::numerics, "",
-                    "resistance matrix is not positive definite (first bad pivot at particle " +
-                        std::to_string(particle) + ")");
-    }
-    s.check(good, "factorisation");
-}
-
-void SpdSolver::solve(const std::vector<const std::vector<Vec6>*>& right_hand_sides,
-                      const std::vector<std::vector<Vec6>*>& solutions)
-{
-    Impl& s = *impl_;
-    const std::size_t size = static_cast<std::size_t>(s.n) * block;
-    const std::size_t count = right_hand_sides.size();
-    if (!s.right || s.right->nrow != size || s.right->ncol != count) {
-        cholmod_free_dense(&s.right, &s.common);
-        s.right = cholmod_allocate_dense(size, count, size, CHOLMOD_REAL, &s.common);
-        s.check(s.right, "allocation");
-    }
-    auto* b = static_cast<double*>(s.right->x);
-    for (std::size_t k = 0; k < count; ++k)
-        std::memcpy(b + k * size, right_hand_sides[k]->data(), size * sizeof(double));
-    s.check(cholmod_solve2(CHOLMOD_A, s.factor, s.right, nullptr, &s.solution, nullptr, &s.work_y,
-                           &s.work_e, &s.common),
-            "solve");
-    const auto* x = static_cast<const double*>(s.solution->x);
-    for (std::size_t k = 0; k < count; ++k) {
-        solutions[k]->resize(s.n);
-        std::memcpy(solutions[k]->data(), x + k * size, size * sizeof(double));
-    }
+    impl_->factorise(matrix);
+    impl_->cholesky.solve(b, x);
 }
 
 std::string solver_version()
 {
-    int version[3];
-    cholmod_version(version);
-    return "CHOLMOD " + std::to_string(version[0]) + "." + std::to_string(version[1]) + "." +
-           std::to_string(version[2]);
+    return cholesky_version();
 }
 
 }

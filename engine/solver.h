@@ -1,9 +1,12 @@
-// engine/solver.h -- sparse symmetric positive definite solve, R X = B.
+// engine/solver.h -- the resistance problem (R - w f f^T) x = b, two ways behind one interface.
 //
-// CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM Trans. Math. Softw. 35, 22, 2008), supernodal. The
-// fill-reducing order is found on the graph of the particles (a sixth of the size of the matrix) and
-// kept, with the symbolic analysis, as long as the pattern (the candidate pairs) stays the same.
-// Errors: numerics "not positive definite" with the particle of the first bad pivot; never a fall-back.
+// R is sparse, symmetric and positive definite; the optional rank-one term comes from stress
+// control (evaluation.h).
+//   cholesky  factorises R anew (engine/cholesky.h); f by the Sherman-Morrison formula
+//   pcg       conjugate gradients, preconditioned by a block incomplete factor (engine/pcg.h)
+// The true residual of every solve is computed and reported. An iteration that does not reach the
+// tolerance falls back to Cholesky; the report says so.
+// Errors: numerics (R not positive definite).
 #pragma once
 #include "engine/pairs.h"
 #include "engine/resistance_matrix.h"
@@ -15,22 +18,42 @@
 
 namespace sigmaflow {
 
-class SpdSolver {
+enum class SolverKind { pcg, cholesky };
+
+struct SolverSettings {
+    SolverKind kind = SolverKind::pcg;
+    double tolerance = 1e-5;  // of the residual, relative, in the norm of the preconditioner (0, 1)
+};
+
+struct SolveReport {
+    int iterations = 0;
+    double residual = 0;  // |b - A x|/|b|
+    bool fell_back = false;
+};
+
+/// R - weight direction direction^T
+struct ResistanceProblem {
+    const ResistanceMatrix& matrix;
+    const Velocities* direction = nullptr;
+    double weight = 0;
+};
+
+class ResistanceSolver {
 public:
-    SpdSolver();
-    ~SpdSolver();
-    SpdSolver(SpdSolver&&) noexcept;
-    SpdSolver& operator=(SpdSolver&&) noexcept;
+    explicit ResistanceSolver(const SolverSettings& settings);
+    ~ResistanceSolver();
+    ResistanceSolver(ResistanceSolver&&) noexcept;
+    ResistanceSolver& operator=(ResistanceSolver&&) noexcept;
 
     /// Sparsity pattern for n particles; pair blocks of a matrix refer to these candidates.
     void set_pattern(int n, const std::vector<Candidate>& candidates);
 
-    /// Numerical factorisation; PairBlock::candidate indexes the pattern.
-    void factorise(const ResistanceMatrix& matrix);
+    /// x: a guess on entry (any size: not used), the solution on return.
+    SolveReport solve(const ResistanceProblem& problem, const Velocities& b, Velocities& x);
 
-    /// Solves for several right-hand sides at once; each [n].
-    void solve(const std::vector<const std::vector<Vec6>*>& right_hand_sides,
-               const std::vector<std::vector<Vec6>*>& solutions);
+    /// Exact solutions for several right-hand sides at once, without a rank-one term.
+    void solve_directly(const ResistanceMatrix& matrix, const std::vector<const Velocities*>& b,
+                        const std::vector<Velocities*>& x);
 
 private:
     struct Impl;

@@ -33,13 +33,14 @@ void step(State& state, const Model& model, const Control& control, Scheme schem
 /// Longest time in which nothing moves by more than `displacement` [1/rate0].
 double displacement_time_step(const Evaluation& evaluation, double displacement);
 
-/// Longest time step for which sticking contacts stay stable, 25 eta0 a/kt and at most the relaxation
-/// time of the contacts: the fastest mode is a sticking contact being turned, with a relaxation rate of
-/// 0.034 kt/(eta0 a) at delta = 1e-3 (measured), and Euler and Heun are stable up to 2 over that rate.
+/// Longest time step for which sticking contacts stay stable, 25 eta0 a/kt and at most the
+/// relaxation time of the contacts: the fastest mode is a sticking contact being turned, with a
+/// relaxation rate of 0.034 kt/(eta0 a) at delta = 1e-3 (measured), and Euler and Heun are stable
+/// up to 2 over that rate.
 double stable_time_step(const Evaluation& evaluation);
 
-/// One adaptive step, shortened to land on the limits exactly; `first` is the evaluation of `state`.
-/// The shear rate may be negative for a while; then the box goes back.
+/// One adaptive step, shortened to land on the limits exactly; `first` is the evaluation of
+/// `state`. The shear rate may be negative for a while; then the box goes back.
 void advance(State& state, const Model& model, const Control& control, const Stepping& stepping,
              const StepLimit& limit, const Evaluation& first, Workspace& workspace);
 

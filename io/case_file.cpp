@@ -91,7 +91,7 @@ Json pairs_json(const Case& one, const Evaluation& e)
     return rows;
 }
 
-Json stress_json(const Evaluation& e)
+Json stress_json(const DetailedEvaluation& e)
 {
     Json stress;
     for (std::size_t p = 0; p < e.stress.size(); ++p)
@@ -112,7 +112,7 @@ Json power_json(const PowerBalance& p)
             {"repulsion", p.repulsion}};
 }
 
-Json columns_json(const Evaluation& e)
+Json columns_json(const DetailedEvaluation& e)
 {
     Json columns;
     for (std::size_t c = 0; c < column_names.size(); ++c)
@@ -244,8 +244,9 @@ Case read_case(const JsonNode& root)
 Json observables_json(const Case& one)
 {
     Workspace workspace;
-    const Evaluation e = evaluate(one.state, one.model, one.control, workspace);
-    const Sample sample = make_sample(one.state, e);
+    const DetailedEvaluation d = evaluate_in_detail(one.state, one.model, one.control, workspace);
+    const Evaluation& e = d.evaluation;
+    const Sample sample = make_sample(one.state, d);
     const Velocities v = total_velocities(one.state, e);
     double sum_of_xi = 0;
     for (const PairState& p : e.pairs) sum_of_xi += p.pair.xi;
@@ -260,8 +261,8 @@ Json observables_json(const Case& one)
         {"N2", sample.normal_stress_difference_2},
         {"particle_pressure", sample.particle_pressure},
         {"volume_fraction", volume_fraction(one.state)},
-        {"stress", stress_json(e)},
-        {"power", power_json(power_balance(one.state, e))},
+        {"stress", stress_json(d)},
+        {"power", power_json(power_balance(one.state, d))},
         {"pairs_in_range", e.pairs.size()},
         {"contacts", e.contacts.size()},
         {"frictional_contacts", count([](const ContactLoad& c) { return c.frictional; })},
@@ -274,21 +275,22 @@ Json observables_json(const Case& one)
          array_of(e.nonaffine, [](const Vec6& w) { return w.head<3>().norm(); })},
         {"velocity", array_of(v, [](const Vec6& w) { return list(Vec3(w.head<3>())); })},
         {"angular_velocity", array_of(v, [](const Vec6& w) { return list(Vec3(w.tail<3>())); })},
-        {"columns", columns_json(e)},
+        {"columns", columns_json(d)},
         {"particle_stress",
-         array_of(particle_stress(one.state, e), [](const Mat3& S) { return list(S); })}};
+         array_of(particle_stress(one.state, d), [](const Mat3& S) { return list(S); })}};
 }
 
 Json trajectory_json(const Case& one, const TrajectoryPlan& plan)
 {
-    Workspace workspace;
+    Workspace workspace({SolverKind::cholesky});
     State s = one.state;
     const bool by_stress = std::holds_alternative<ImposedStress>(one.control);
     const auto every = static_cast<long>(std::lround(plan.interval / plan.step));
     Json value = Json::array(), contacts = Json::array(), time = Json::array();
     for (std::size_t point = 0;; ++point) {
-        Evaluation e = evaluate(s, one.model, one.control, workspace);
-        value.push_back(by_stress ? e.shear_rate : e.total_stress()(flow, gradient));
+        const DetailedEvaluation d = evaluate_in_detail(s, one.model, one.control, workspace);
+        Evaluation e = d.evaluation;
+        value.push_back(by_stress ? e.shear_rate : d.total_stress()(flow, gradient));
         contacts.push_back(e.contacts.size());
         time.push_back(s.time);
         if (point + 1 >= plan.strain.size()) break;

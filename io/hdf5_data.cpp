@@ -95,8 +95,8 @@ Hdf5Handle file_access()
 Hdf5Handle space_of(const Shape& shape)
 {
     if (shape.empty()) return Hdf5Handle(H5Screate(H5S_SCALAR), H5Sclose);
-    return Hdf5Handle(
-        H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+    return Hdf5Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                      H5Sclose);
 }
 
 Hdf5Handle text_type(std::size_t length)
@@ -237,11 +237,34 @@ std::vector<std::string> attribute_names(const Hdf5Group& group)
     return names;
 }
 
+namespace {
+
+/// An attribute with a single value.
+Hdf5Handle single_attribute(const Hdf5Group& group, const std::string& attribute)
+{
+    const std::string where = place_of(group.id(), attribute);
+    Hdf5Handle opened = read(H5Aopen(group.id(), attribute.c_str(), H5P_DEFAULT), H5Aclose, where);
+    const Hdf5Handle space(H5Aget_space(opened.id()), H5Sclose);
+    if (H5Sget_simple_extent_npoints(space.id()) != 1)
+        throw Error(ErrorKind::input, where, "must be a single value");
+    return opened;
+}
+
+}
+
+double read_number(const Hdf5Group& group, const std::string& attribute)
+{
+    const Hdf5Handle opened = single_attribute(group, attribute);
+    double value = 0;
+    if (H5Aread(opened.id(), H5T_NATIVE_DOUBLE, &value) < 0)
+        throw failed_read(place_of(group.id(), attribute));
+    return value;
+}
+
 std::string read_text(const Hdf5Group& group, const std::string& attribute)
 {
     const std::string where = place_of(group.id(), attribute);
-    const Hdf5Handle opened =
-        read(H5Aopen(group.id(), attribute.c_str(), H5P_DEFAULT), H5Aclose, where);
+    const Hdf5Handle opened = single_attribute(group, attribute);
     const Hdf5Handle stored(H5Aget_type(opened.id()), H5Tclose);
     if (H5Tget_class(stored.id()) != H5T_STRING || H5Tis_variable_str(stored.id()) <= 0)
         throw Error(ErrorKind::input, where, "must be a text");
@@ -288,7 +311,8 @@ void GrowingDataset::append(hid_t type, const void* values, hsize_t count)
 Shape dataset_shape(const Hdf5Group& group, const std::string& name)
 {
     const std::string where = group.where(name);
-    const Hdf5Handle dataset = read(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, where);
+    const Hdf5Handle dataset =
+        read(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, where);
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
     const int rank = H5Sget_simple_extent_ndims(space.id());
     if (rank < 0) throw failed_read(where);
@@ -318,7 +342,8 @@ hsize_t checked_size(const Hdf5Group& group, const std::string& name, const Shap
 void read_raw(const Hdf5Group& group, const std::string& name, hid_t type, void* values)
 {
     const std::string where = group.where(name);
-    const Hdf5Handle dataset = read(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, where);
+    const Hdf5Handle dataset =
+        read(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, where);
     const Hdf5Handle stored(H5Dget_type(dataset.id()), H5Tclose);
     if (H5Tequal(stored.id(), stored_type(type)) <= 0)
         throw Error(ErrorKind::input, where, "has another type of number");

@@ -1,8 +1,9 @@
 // io/hdf5_data.h -- groups, attributes and datasets of numbers; used by the run file only.
 //
-// Types: double, int32, int64, uint8 (little-endian on disk) and UTF-8 texts. Every failure is an Error
-// "<file>:<path in the file>: <problem>": while writing no_space or file, told apart by the system's
-// error number; while reading input. HDF5 itself prints nothing.
+// Types: double, int32, int64, uint8 (little-endian on disk) and UTF-8 texts. Every failure is an
+// Error
+// "<file>:<path in the file>: <problem>": while writing no_space or file, told apart by the
+// system's error number; while reading input. HDF5 itself prints nothing.
 #pragma once
 #include "engine/error.h"
 #include "io/hdf5_handle.h"
@@ -73,8 +74,9 @@ void write_numbers(hid_t object, const std::string& attribute, const std::vector
 }
 
 std::vector<std::string> attribute_names(const Hdf5Group& group);
-/// An attribute that is one text.
+/// An attribute that is one text, or one number of any type.
 std::string read_text(const Hdf5Group& group, const std::string& attribute);
+double read_number(const Hdf5Group& group, const std::string& attribute);
 
 /// A dataset to which rows are added: chunked, with Fletcher32 checksums.
 class GrowingDataset {
@@ -104,6 +106,13 @@ GrowingDataset grow(const Hdf5Group& group, const std::string& name, const Shape
                     const std::string& unit)
 {
     return GrowingDataset(group, name, native_type<T>(), row_shape, unit);
+}
+
+template <class T>
+void write_dataset(const Hdf5Group& group, const std::string& name, const std::vector<T>& values,
+                   const std::string& unit)
+{
+    grow<T>(group, name, {}, unit).append(values);
 }
 
 Shape dataset_shape(const Hdf5Group& group, const std::string& name);

@@ -174,6 +174,9 @@ private:
 std::optional<std::string> nearest_word(std::string_view word,
                                         std::span<const std::string_view> known);
 
+/// The shortest decimal text that reads back as the same number.
+std::string number_text(double value);
+
 /// Text in double quotes, control characters escaped, shortened to `longest` bytes.
 std::string in_quotes(std::string_view text, std::size_t longest = 60);
 

@@ -1,7 +1,6 @@
 #include "io/json_document.h"
 
 #include "io/json_parse.h"
-#include "io/number_text.h"
 
 #include <algorithm>
 #include <charconv>

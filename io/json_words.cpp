@@ -2,6 +2,8 @@
 #include "io/json_document.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 
 namespace sigmaflow::io {
 
@@ -59,6 +61,13 @@ std::optional<std::string> nearest_word(std::string_view word,
     for (std::string_view candidate : known)  // "fraction" for "volume_fraction"
         if (candidate.ends_with("_" + given)) return std::string(candidate);
     return std::nullopt;
+}
+
+std::string number_text(double value)
+{
+    std::array<char, 32> buffer;  // the longest is -2.2250738585072014e-308
+    const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return std::string(buffer.data(), result.ptr);
 }
 
 std::string in_quotes(std::string_view text, std::size_t longest)

@@ -1,7 +1,5 @@
 #include "io/model_fields.h"
 
-#include "io/number_text.h"
-
 namespace sigmaflow::io {
 
 void describe(Fields& f, Model& m)

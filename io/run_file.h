@@ -2,7 +2,9 @@
 //
 // Time series of every scalar, H5MD-style particle frames, units as attributes, provenance.
 // The file grows under the name "<path>.part" and gets its own name when finished, so a file called
-// run.h5 is always complete. Errors: file, no_space, missing, input (not a sigmaflow file).
+// run.h5 is always complete; what a broken run leaves is readable up to the last flush.
+// Errors: file, no_space; reading: missing, input (not a finished sigmaflow file, or a damaged
+// one); they name the file and the dataset. After an Error a RunWriter can only be destroyed.
 #pragma once
 #include "engine/frame.h"
 #include "engine/model.h"
@@ -20,13 +22,17 @@ using Provenance = std::map<std::string, std::string>;
 
 class RunWriter {
 public:
+    /// `first` says which particles the frames will have, at least one; it is not stored as a
+    /// frame.
     RunWriter(const std::filesystem::path& path, const State& first, const Model& model,
               const Control& control, const Provenance& provenance);
     ~RunWriter();
     RunWriter(RunWriter&&) noexcept;
 
     void append(const Sample& sample);
+    /// Error(internal) if the particles are not those of the first state.
     void append(const Frame& frame);
+    /// Hands everything to the operating system.
     void flush();
     /// Completes the file and gives it its name.
     void finish();
@@ -38,7 +44,9 @@ private:
 
 struct StoredRun {
     std::vector<Sample> series;
-    std::vector<Frame> frames;
+    std::vector<Frame> frames;  // their states are complete: a run can be continued from each
+    Model model;
+    Control control;
     Provenance provenance;
 };
 

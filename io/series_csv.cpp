@@ -70,7 +70,7 @@ SeriesWriter::SeriesWriter(const std::filesystem::path& path) : file_(path)
 void SeriesWriter::append(const Sample& sample)
 {
     const auto text = [&sample](const SampleField& field) {
-        return shortest_text(sample.*field.value);
+        return number_text(sample.*field.value);
     };
     file_.write(row(text) + '\n');
 }

@@ -1,8 +1,9 @@
-// render/drawing.h -- flat pictures as a list of shapes: what plots, colour bars and titles are made of.
+// render/drawing.h -- flat pictures as a list of shapes: what plots, colour bars and titles are
+// made of.
 //
 // The same list becomes pixels (rasterise) or an SVG file (svg_text); neither needs any graphics
-// system, so both look the same everywhere. Coordinates are pixels, x to the right, y downwards from
-// the top left corner of the picture; texts arrive as outlines.
+// system, so both look the same everywhere. Coordinates are pixels, x to the right, y downwards
+// from the top left corner of the picture; texts arrive as outlines.
 #pragma once
 #include "render/image.h"
 
@@ -46,9 +47,9 @@ struct Fill {
 struct Stroke {
     Contour points;
     Ink ink;
-    double width = 1;           // [pixels]
+    double width = 1;            // [pixels]
     std::vector<double> dashes;  // lengths on, off, on, ... [pixels]; empty: solid
-    bool round = false;         // ends
+    bool round = false;          // ends
 };
 
 struct Shape {

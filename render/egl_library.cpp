@@ -3,8 +3,8 @@
 
 #include "engine/error.h"
 
-#include <cstring>
 #include <dlfcn.h>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -23,8 +23,8 @@ EglLibrary load()
     if (!handle) throw no_driver(std::string("libEGL cannot be loaded (") + dlerror() + ")");
     EglLibrary egl;
     const auto find = [&](const char* name, auto& function) {
-        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
-            dlsym(handle, name));
+        function =
+            reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(handle, name));
         if (!function) throw no_driver(std::string("libEGL lacks the function ") + name);
     };
     find("eglGetProcAddress", egl.get_proc_address);
@@ -53,8 +53,8 @@ std::vector<EGLDisplay> candidate_displays(const EglLibrary& egl)
     if (platform_display && has("EGL_MESA_platform_surfaceless"))
         candidates.push_back(
             platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
-    const auto query_devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(
-        egl.get_proc_address("eglQueryDevicesEXT"));
+    const auto query_devices =
+        reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl.get_proc_address("eglQueryDevicesEXT"));
     if (platform_display && query_devices && has("EGL_EXT_platform_device")) {
         EGLDeviceEXT devices[16];
         EGLint count = 0;
@@ -69,9 +69,19 @@ std::vector<EGLDisplay> candidate_displays(const EglLibrary& egl)
 
 bool find_config(EglLibrary& egl, EGLDisplay display)
 {
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
-                             EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8,
-                             EGL_ALPHA_SIZE, 8, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                             EGL_PBUFFER_BIT,
+                             EGL_RENDERABLE_TYPE,
+                             EGL_OPENGL_BIT,
+                             EGL_RED_SIZE,
+                             8,
+                             EGL_GREEN_SIZE,
+                             8,
+                             EGL_BLUE_SIZE,
+                             8,
+                             EGL_ALPHA_SIZE,
+                             8,
+                             EGL_NONE};
     EGLint count = 0;
     return egl.choose_config(display, wanted, &egl.config, 1, &count) && count > 0;
 }

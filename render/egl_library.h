@@ -25,9 +25,9 @@ struct EglLibrary {
     EGLConfig config = nullptr;
 };
 
-/// Loaded and initialised once in the life of the process, never unloaded: EGL displays are shared by
-/// the whole process, so ending one could pull it from under another window.
-/// Error: rendering (libEGL is missing, no driver).
+/// Loaded and initialised once in the life of the process, never unloaded: EGL displays are shared
+/// by the whole process, so ending one could pull it from under another window. Error: rendering
+/// (libEGL is missing, no driver).
 const EglLibrary& egl_library();
 
 }

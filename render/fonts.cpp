@@ -3,8 +3,8 @@
 
 #include "engine/error.h"
 
-#include <algorithm>
 #include <ft2build.h>
+#include <algorithm>
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
 
@@ -81,8 +81,8 @@ TextOutline glyph_outline(FT_Face face, FT_UInt glyph)
 {
     if (FT_Load_Glyph(face, glyph, FT_LOAD_NO_SCALE)) return {};
     Collector collector{{}, 1.0 / face->units_per_EM};
-    FT_Outline_Funcs receivers{Collector::move_to, Collector::line_to, Collector::conic_to,
-                               Collector::cubic_to, 0, 0};
+    FT_Outline_Funcs receivers{
+        Collector::move_to, Collector::line_to, Collector::conic_to, Collector::cubic_to, 0, 0};
     FT_Outline_Decompose(&face->glyph->outline, &receivers, &collector);
     return {std::move(collector.contours), face->glyph->metrics.horiAdvance * collector.scale};
 }
@@ -97,7 +97,10 @@ void move(std::vector<Contour>& contours, double dx, double dy)
     }
 }
 
-bool is_combining(char32_t letter) { return letter >= 0x300 && letter <= 0x36f; }
+bool is_combining(char32_t letter)
+{
+    return letter >= 0x300 && letter <= 0x36f;
+}
 
 /// The fonts place marks with tables that FreeType does not read, so they are centred here.
 void place_mark(std::vector<Contour>& mark, const Extent& base)
@@ -126,9 +129,12 @@ FT_Face open_face(FT_Library freetype, const std::vector<std::filesystem::path>&
 
 std::vector<std::filesystem::path> usual_font_folders()
 {
-    return {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu",
-            "/usr/share/fonts/dejavu-sans-fonts", "/usr/share/fonts/dejavu-serif-fonts",
-            "/usr/share/fonts/TTF", "/usr/local/share/fonts/dejavu"};
+    return {"/usr/share/fonts/truetype/dejavu",
+            "/usr/share/fonts/dejavu",
+            "/usr/share/fonts/dejavu-sans-fonts",
+            "/usr/share/fonts/dejavu-serif-fonts",
+            "/usr/share/fonts/TTF",
+            "/usr/local/share/fonts/dejavu"};
 }
 
 Fonts::Fonts(const std::vector<std::filesystem::path>& folders)
@@ -153,8 +159,8 @@ TextOutline Fonts::outline(const std::string& utf8, Face wanted) const
     FT_Face last_face = nullptr;
     FT_UInt last_glyph = 0;
     for (const char32_t letter : decode_utf8(utf8)) {
-        const bool use_other = FT_Get_Char_Index(preferred, letter) == 0 &&
-                               FT_Get_Char_Index(other, letter) != 0;
+        const bool use_other =
+            FT_Get_Char_Index(preferred, letter) == 0 && FT_Get_Char_Index(other, letter) != 0;
         const FT_Face face = use_other ? other : preferred;
         const FT_UInt glyph = FT_Get_Char_Index(face, letter);
         TextOutline shape = glyph_outline(face, glyph);
@@ -182,9 +188,11 @@ std::u32string decode_utf8(const std::string& text)
     std::u32string letters;
     for (std::size_t i = 0; i < text.size();) {
         const auto first = static_cast<unsigned char>(text[i++]);
-        const int more = first < 0x80 ? 0 : first >> 5 == 6 ? 1 : first >> 4 == 14 ? 2
-                         : first >> 3 == 30                 ? 3
-                                                            : -1;
+        const int more = first < 0x80       ? 0
+                         : first >> 5 == 6  ? 1
+                         : first >> 4 == 14 ? 2
+                         : first >> 3 == 30 ? 3
+                                            : -1;
         if (more < 0) {
             letters += U'\uFFFD';
             continue;

@@ -22,9 +22,9 @@ void check(const Plot& plot)
 {
     for (int size : {plot.width, plot.height})
         if (size < 64 || size > 16384)
-            throw Error(ErrorKind::input, "plot",
-                        "the picture size must be in [64, 16384] pixels, got " +
-                            std::to_string(size));
+            throw Error(
+                ErrorKind::input, "plot",
+                "the picture size must be in [64, 16384] pixels, got " + std::to_string(size));
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const Series& series = plot.series[i];
         const std::string where = "series " + std::to_string(i);

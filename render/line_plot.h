@@ -15,13 +15,13 @@ enum class Line { none, solid, dashed, dotted };
 enum class Marker { none, circle, square, triangle, diamond, cross };
 
 struct Series {
-    std::string label;            // empty: not in the legend
-    std::vector<double> x, y;     // NaN breaks the line
+    std::string label;                     // empty: not in the legend
+    std::vector<double> x, y;              // NaN breaks the line
     std::vector<double> x_error, y_error;  // empty or one per point
     Line line = Line::solid;
     Marker marker = Marker::none;
     bool open_marker = false;
-    double line_width = 2.5;      // [pixels at height 1080]
+    double line_width = 2.5;       // [pixels at height 1080]
     std::optional<Colour> colour;  // default: next of a colour-blind safe cycle
 };
 

@@ -1,8 +1,8 @@
 // render/offscreen.cpp
 //
-// How the window works: a vtkGenericOpenGLRenderWindow that owns an OpenGL 3.2 core context with a tiny
-// pbuffer. VTK draws into framebuffers of its own, from which pictures are read; the pbuffer only has to
-// exist.
+// How the window works: a vtkGenericOpenGLRenderWindow that owns an OpenGL 3.2 core context with a
+// tiny pbuffer. VTK draws into framebuffers of its own, from which pictures are read; the pbuffer
+// only has to exist.
 #include <GL/glew.h>
 
 #include "engine/error.h"
@@ -76,9 +76,13 @@ void EglRenderWindow::create_context()
 {
     if (context_ != EGL_NO_CONTEXT) return;
     const EglLibrary& egl = egl_library();
-    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2,
+    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
+                              3,
+                              EGL_CONTEXT_MINOR_VERSION,
+                              2,
                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                              EGL_NONE};
     const EGLint size[] = {EGL_WIDTH, 8, EGL_HEIGHT, 8, EGL_NONE};
     if (!egl.bind_api(EGL_OPENGL_API)) throw cannot_draw("EGL knows no desktop OpenGL");
     context_ = egl.create_context(egl.display, egl.config, EGL_NO_CONTEXT, version);

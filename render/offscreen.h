@@ -1,16 +1,16 @@
 // render/offscreen.h -- the one place that knows how a picture gets its OpenGL context.
 //
 // Debian's VTK 9.1 is built for X windows only: without a display it aborts the process. The window
-// here lives on an EGL context (Mesa's surfaceless platform, else the first EGL device that works), so
-// it needs no X server, no environment variable and no side process. libEGL is loaded at run time: a
-// machine without it loses its pictures, not the program.
+// here lives on an EGL context (Mesa's surfaceless platform, else the first EGL device that works),
+// so it needs no X server, no environment variable and no side process. libEGL is loaded at run
+// time: a machine without it loses its pictures, not the program.
 //
 // Use it from one thread at a time.
 #pragma once
 #include "render/image.h"
 
-#include <string>
 #include <vtkSmartPointer.h>
+#include <string>
 
 class vtkOutputWindow;
 class vtkRenderWindow;

@@ -1,7 +1,7 @@
 // render/particles.h -- spheres at their true radii, coloured by one of their arrays.
 //
-// Takes the same vtkPolyData that is saved for ParaView (point arrays `radius` and the colour array),
-// so picture and file cannot disagree. Errors: rendering, input (no such array).
+// Takes the same vtkPolyData that is saved for ParaView (point arrays `radius` and the colour
+// array), so picture and file cannot disagree. Errors: rendering, input (no such array).
 #pragma once
 #include "render/image.h"
 
@@ -14,13 +14,13 @@ class vtkPolyData;
 namespace sigmaflow::render {
 
 struct ParticleView {
-    int width = 1920, height = 1080;  // [64, 16384]
+    int width = 1920, height = 1080;     // [64, 16384]
     std::array<double, 3> box_length{};  // outline [0, L]
     std::string colour_by = "nonaffine_speed";
-    std::string colour_label;         // rich text; empty: made from colour_by
+    std::string colour_label;            // rich text; empty: made from colour_by
     std::string colour_map = "inferno";  // inferno, viridis, paper (dark grey to yellow)
     std::optional<double> colour_minimum, colour_maximum;  // default 0 and a round 99 % quantile
-    std::string title;                // rich text: $italic$, _{sub}, ^{super}
+    std::string title;                                     // rich text: $italic$, _{sub}, ^{super}
     bool ambient_occlusion = true;
     bool antialiasing = true;
     bool triad = true, colour_bar = true, outline = true;

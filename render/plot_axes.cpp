@@ -11,7 +11,10 @@ namespace {
 constexpr double major_length = 15, minor_length = 8, major_width = 2.2, minor_width = 1.6;
 constexpr double label_gap = 14;
 
-double whole_pixels(double width) { return std::max(1.0, std::round(width)); }
+double whole_pixels(double width)
+{
+    return std::max(1.0, std::round(width));
+}
 
 /// A centre line such that a line of this width covers whole pixels.
 double sharp(double position, double width)
@@ -25,8 +28,12 @@ void draw_frame(Drawing& drawing, const PlotLayout& layout)
     const Rectangle& f = layout.frame;
     const double left = sharp(f.left, width), right = sharp(f.right, width);
     const double top = sharp(f.top, width), bottom = sharp(f.bottom, width);
-    drawing.stroke({.points = {{left, top}, {right, top}, {right, bottom}, {left, bottom},
-                               {left, top}, {right, top}},
+    drawing.stroke({.points = {{left, top},
+                               {right, top},
+                               {right, bottom},
+                               {left, bottom},
+                               {left, top},
+                               {right, top}},
                     .ink = {frame_colour},
                     .width = width,
                     .dashes = {}});
@@ -122,7 +129,9 @@ SpanLabel span_label(const Span& span, const PlotLayout& layout, const Fonts& fo
     const double width = size * text_width(fonts, span.label), centre = (left + right) / 2;
     if (width + 0.8 * size < right - left) {
         const double base = top + capital_height * size;
-        return {{centre, base}, size, false,
+        return {{centre, base},
+                size,
+                false,
                 {centre - width / 2, top, centre + width / 2, base + 0.3 * size}};
     }
     const double base = std::max(centre + 0.5 * capital_height * size,

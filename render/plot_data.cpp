@@ -11,7 +11,8 @@ namespace {
 
 constexpr double error_width = 2.0, cap_length = 6, marker_radius = 9;
 
-/// Okabe & Ito's colours, told apart by colour-blind readers, too; their yellow is too pale for lines.
+/// Okabe & Ito's colours, told apart by colour-blind readers, too; their yellow is too pale for
+/// lines.
 constexpr std::array<Colour, 7> cycle{{{0, 114, 178},
                                        {213, 94, 0},
                                        {0, 158, 115},
@@ -77,7 +78,8 @@ void draw_marker(Drawing& drawing, const Series& series, Colour colour, Point ce
     drawing.fill({{contour}, {series.open_marker ? Colour{255, 255, 255} : colour}, {}});
     if (!series.open_marker) return;
     contour.push_back(contour[0]);
-    drawing.stroke({.points = contour, .ink = {colour}, .width = width, .dashes = {}, .round = true});
+    drawing.stroke(
+        {.points = contour, .ink = {colour}, .width = width, .dashes = {}, .round = true});
 }
 
 void draw_error_bar(Drawing& drawing, Point from, Point to, Colour colour, double unit,
@@ -112,13 +114,13 @@ void draw_error_bars(Drawing& drawing, const Series& series, Colour colour,
         if (!f.contains(layout.point(x, y))) continue;
         if (!series.y_error.empty()) {
             const double e = series.y_error[i];
-            draw_error_bar(drawing, finite(layout.point(x, y - e), outside),
-                           layout.point(x, y + e), colour, layout.unit, f);
+            draw_error_bar(drawing, finite(layout.point(x, y - e), outside), layout.point(x, y + e),
+                           colour, layout.unit, f);
         }
         if (!series.x_error.empty()) {
             const double e = series.x_error[i];
-            draw_error_bar(drawing, finite(layout.point(x - e, y), outside),
-                           layout.point(x + e, y), colour, layout.unit, f);
+            draw_error_bar(drawing, finite(layout.point(x - e, y), outside), layout.point(x + e, y),
+                           colour, layout.unit, f);
         }
     }
 }
@@ -129,8 +131,10 @@ std::vector<Contour> unbroken_pieces(const Series& series, const PlotLayout& lay
     std::vector<Contour> pieces(1);
     for (std::size_t i = 0; i < series.x.size(); ++i) {
         const Point p = layout.point(series.x[i], series.y[i]);
-        if (std::isfinite(p.x) && std::isfinite(p.y)) pieces.back().push_back(p);
-        else if (!pieces.back().empty()) pieces.emplace_back();
+        if (std::isfinite(p.x) && std::isfinite(p.y))
+            pieces.back().push_back(p);
+        else if (!pieces.back().empty())
+            pieces.emplace_back();
     }
     return pieces;
 }
@@ -185,7 +189,8 @@ void draw_spans(Drawing& drawing, const Plot& plot, const PlotLayout& layout)
         const double left = std::max(layout.x.pixel(span.from), f.left);
         const double right = std::min(layout.x.pixel(span.to), f.right);
         if (left < right)
-            drawing.fill({{rectangle_contour({left, f.top, right, f.bottom})}, {{230, 230, 232}}, {}});
+            drawing.fill(
+                {{rectangle_contour({left, f.top, right, f.bottom})}, {{230, 230, 232}}, {}});
     }
 }
 

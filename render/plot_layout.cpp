@@ -30,16 +30,23 @@ public:
             add(values[i] + errors[i]);
         }
     }
-    Range range() const
+    /// With room below and above, as shares of the range. A default range if there is nothing.
+    Range range(double below, double above) const
     {
-        if (range_.from <= range_.to) return range_;
-        return logarithmic_ ? Range{0.1, 1} : Range{0, 1};
+        if (range_.from > range_.to) return logarithmic_ ? Range{0.1, 1} : Range{0, 1};
+        if (logarithmic_) {
+            const double ratio = range_.to / range_.from;
+            return {range_.from / std::pow(ratio, below), range_.to * std::pow(ratio, above)};
+        }
+        const double length = range_.to - range_.from;
+        // Quantities that are never negative keep their zero.
+        const bool near_zero = range_.from >= 0 && range_.from < 0.25 * length;
+        return {near_zero ? 0 : range_.from - below * length, range_.to + above * length};
     }
 
 private:
     bool logarithmic_;
-    Range range_{std::numeric_limits<double>::infinity(),
-                 -std::numeric_limits<double>::infinity()};
+    Range range_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };
 
 Range x_extremes(const Plot& plot)
@@ -51,7 +58,12 @@ Range x_extremes(const Plot& plot)
         extremes.add(span.from);
         extremes.add(span.to);
     }
-    return extremes.range();
+    // Lines may begin and end on the frame, markers not.
+    const bool markers = std::any_of(plot.series.begin(), plot.series.end(), [](const Series& s) {
+        return s.marker != Marker::none && !s.x.empty();
+    });
+    const double room = markers ? 0.02 : 0;
+    return extremes.range(room, room);
 }
 
 Range y_extremes(const Plot& plot)
@@ -62,20 +74,8 @@ Range y_extremes(const Plot& plot)
         extremes.add(band.lower, {});
         extremes.add(band.upper, {});
     }
-    return extremes.range();
-}
-
-/// Room below and above the data, as shares of their range.
-Range with_margins(Range data, bool logarithmic, double below, double above)
-{
-    if (logarithmic) {
-        const double ratio = data.to / data.from;
-        return {data.from / std::pow(ratio, below), data.to * std::pow(ratio, above)};
-    }
-    const double length = data.to - data.from;
-    // Quantities that are never negative keep their zero.
-    const double from = data.from >= 0 && data.from < 0.25 * length ? 0 : data.from - below * length;
-    return {from, data.to + above * length};
+    // Labels of spans stand at the top of the frame, above the data.
+    return extremes.range(0.04, plot.spans.empty() ? 0.04 : 0.12);
 }
 
 Range axis_range(const PlotAxis& axis, Range data, const std::string& where)
@@ -121,21 +121,17 @@ PlotLayout plot_layout(const Plot& plot, const Fonts& fonts)
 {
     PlotLayout layout;
     layout.unit = std::max(0.3, std::min(plot.width / 1300.0, plot.height / 1080.0));
-    const Range x = x_extremes(plot), y = y_extremes(plot);
-    // Span labels stand at the top of the frame, above the data.
-    const double above = plot.spans.empty() ? 0.04 : 0.12;
     layout.x.logarithmic = plot.x.logarithmic;
     layout.y.logarithmic = plot.y.logarithmic;
-    layout.x.range = axis_range(plot.x, x, "x axis");
-    layout.y.range =
-        axis_range(plot.y, with_margins(y, plot.y.logarithmic, 0.04, above), "y axis");
+    layout.x.range = axis_range(plot.x, x_extremes(plot), "x axis");
+    layout.y.range = axis_range(plot.y, y_extremes(plot), "y axis");
 
     const double unit = layout.unit, tick_font = layout.tick_font();
     const auto x_ticks = layout.x.ticks();
     double left = 24 * unit + 16 * unit + widest_label(layout.y.ticks(), fonts) * tick_font;
     if (!plot.y.title.empty()) left += 1.45 * layout.title_font();
-    const double right = std::max(30 * unit, 12 * unit + 0.5 * tick_font *
-                                                 text_width(fonts, x_ticks.back().label));
+    const double right =
+        std::max(30 * unit, 12 * unit + 0.5 * tick_font * text_width(fonts, x_ticks.back().label));
     const double top = plot.title.empty() ? 34 * unit : 34 * unit + 1.4 * layout.title_font();
     double bottom = 24 * unit + 1.35 * tick_font;
     if (!plot.x.title.empty()) bottom += 1.55 * layout.title_font();

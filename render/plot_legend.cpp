@@ -78,6 +78,26 @@ Rectangle in_corner(Legend corner, double width, double height, const PlotLayout
     return {x, y, x + width, y + height};
 }
 
+/// The corners first, then a grid all over the frame.
+std::vector<Rectangle> candidate_places(double width, double height, const PlotLayout& layout)
+{
+    constexpr int steps = 8;
+    std::vector<Rectangle> places;
+    for (const Legend corner :
+         {Legend::top_right, Legend::top_left, Legend::bottom_right, Legend::bottom_left})
+        places.push_back(in_corner(corner, width, height, layout));
+    const Rectangle first = in_corner(Legend::top_left, width, height, layout);
+    const Rectangle last = in_corner(Legend::bottom_right, width, height, layout);
+    for (int row = 0; row <= steps; ++row) {
+        for (int column = steps; column >= 0; --column) {
+            const double x = first.left + (last.left - first.left) * column / steps;
+            const double y = first.top + (last.top - first.top) * row / steps;
+            places.push_back({x, y, x + width, y + height});
+        }
+    }
+    return places;
+}
+
 bool overlap(const Rectangle& a, const Rectangle& b)
 {
     return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
@@ -96,8 +116,8 @@ Place legend_place(const Plot& plot, const PlotLayout& layout, const Fonts& font
     const auto cost = [&](const Rectangle& box) {
         const double gap = 8 * layout.unit;  // ink that nearly touches counts, too
         const Rectangle wide{box.left - gap, box.top - gap, box.right + gap, box.bottom + gap};
-        long sum = std::count_if(points.begin(), points.end(),
-                                 [&](Point p) { return wide.contains(p); });
+        long sum =
+            std::count_if(points.begin(), points.end(), [&](Point p) { return wide.contains(p); });
         for (const Rectangle& label : labels)
             if (overlap(wide, label)) sum += 1000000;
         return sum;
@@ -108,14 +128,12 @@ Place legend_place(const Plot& plot, const PlotLayout& layout, const Fonts& font
     }
     Rectangle best{};
     long lowest = -1;
-    for (const Legend corner :
-         {Legend::top_right, Legend::top_left, Legend::bottom_right, Legend::bottom_left}) {
-        const Rectangle box = in_corner(corner, width, height, layout);
+    for (const Rectangle& box : candidate_places(width, height, layout)) {
         const long here = cost(box);
-        if (lowest < 0 || here < lowest) {
-            lowest = here;
-            best = box;
-        }
+        if (lowest >= 0 && here >= lowest) continue;
+        lowest = here;
+        best = box;
+        if (here == 0) break;
     }
     return {best, lowest > 0};
 }
@@ -143,15 +161,16 @@ void draw_legend(Drawing& drawing, const Plot& plot, const PlotLayout& layout, c
             const double half = sample_length * unit / 2, high = 0.28 * size;
             drawing.fill({{rectangle_contour({centre.x - half, centre.y - high, centre.x + half,
                                               centre.y + high})},
-                          {band_colour(plot, entry.index), 1.4 * band_opacity}, {}});
+                          {band_colour(plot, entry.index), 1.4 * band_opacity},
+                          {}});
         } else {
-            draw_sample(drawing, plot.series[entry.index], series_colour(plot, entry.index),
-                        centre, sample_length * unit, unit);
+            draw_sample(drawing, plot.series[entry.index], series_colour(plot, entry.index), centre,
+                        sample_length * unit, unit);
         }
-        draw_text(drawing, fonts, entry.label,
-                  {left + (sample_length + sample_gap) * unit,
-                   centre.y + 0.5 * small_height * size},
-                  {.size = size});
+        draw_text(
+            drawing, fonts, entry.label,
+            {left + (sample_length + sample_gap) * unit, centre.y + 0.5 * small_height * size},
+            {.size = size});
         middle += line;
     }
 }

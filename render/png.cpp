@@ -1,14 +1,15 @@
-// render/png.cpp -- PNG through libpng's simplified interface, which returns errors instead of jumping.
+// render/png.cpp -- PNG through libpng's simplified interface, which returns errors instead of
+// jumping.
 #include "engine/error.h"
 #include "render/image.h"
 
+#include <png.h>
+#include <unistd.h>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <png.h>
-#include <unistd.h>
 
 namespace sigmaflow::render {
 namespace {

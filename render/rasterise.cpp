@@ -1,7 +1,8 @@
 // render/rasterise.cpp -- scan conversion by the nonzero winding rule.
 //
-// Each row of pixels is cut into thin scan lines. On a scan line the covered intervals are found exactly,
-// so that vertical edges are smooth without limit and horizontal ones in `lines_per_row` steps.
+// Each row of pixels is cut into thin scan lines. On a scan line the covered intervals are found
+// exactly, so that vertical edges are smooth without limit and horizontal ones in `lines_per_row`
+// steps.
 #include "render/drawing.h"
 
 #include <algorithm>

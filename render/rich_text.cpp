@@ -78,13 +78,14 @@ void draw_text(Drawing& drawing, const Fonts& fonts, const std::string& rich, Po
                                                         : 1.0;
     const double start = -share * line.advance * style.size;
     // A base line on whole pixels keeps the feet of the letters sharp.
-    if (style.upwards) at.x = std::round(at.x);
-    else at.y = std::round(at.y);
+    if (style.upwards)
+        at.x = std::round(at.x);
+    else
+        at.y = std::round(at.y);
     for (Contour& contour : line.contours) {
         for (Point& p : contour) {
             const double along = start + style.size * p.x, down = style.size * p.y;
-            p = style.upwards ? Point{at.x + down, at.y - along}
-                              : Point{at.x + along, at.y + down};
+            p = style.upwards ? Point{at.x + down, at.y - along} : Point{at.x + along, at.y + down};
         }
     }
     if (!line.contours.empty())

@@ -27,12 +27,18 @@ std::string escaped(const std::string& text)
 {
     std::string safe;
     for (char letter : text) {
-        if (letter == '&') safe += "&amp;";
-        else if (letter == '<') safe += "&lt;";
-        else if (letter == '>') safe += "&gt;";
-        else if (letter == '"') safe += "&quot;";
-        else if (static_cast<unsigned char>(letter) < 0x20) safe += ' ';
-        else safe += letter;
+        if (letter == '&')
+            safe += "&amp;";
+        else if (letter == '<')
+            safe += "&lt;";
+        else if (letter == '>')
+            safe += "&gt;";
+        else if (letter == '"')
+            safe += "&quot;";
+        else if (static_cast<unsigned char>(letter) < 0x20)
+            safe += ' ';
+        else
+            safe += letter;
     }
     return safe;
 }
@@ -48,8 +54,12 @@ std::string colour_text(const Colour& colour)
 std::string points_text(const Contour& points)
 {
     std::string text;
-    for (const Point& p : points)
-        text += (text.empty() ? "" : " ") + number(p.x) + "," + number(p.y);
+    for (const Point& p : points) {
+        if (!text.empty()) text += ' ';
+        text += number(p.x);
+        text += ',';
+        text += number(p.y);
+    }
     return text;
 }
 
@@ -62,8 +72,12 @@ std::string opacity_text(const char* attribute, const Ink& ink)
 std::string fill_element(const Fill& fill, const std::string& clip)
 {
     std::string path;
-    for (const Contour& contour : fill.contours)
-        if (!contour.empty()) path += "M" + points_text(contour) + "Z";
+    for (const Contour& contour : fill.contours) {
+        if (contour.empty()) continue;
+        path += 'M';
+        path += points_text(contour);
+        path += 'Z';
+    }
     std::string element = "<path";
     if (!fill.text.empty())
         element += " class=\"text\" role=\"img\" aria-label=\"" + escaped(fill.text) + "\"";
@@ -80,8 +94,10 @@ std::string stroke_element(const Stroke& stroke, const std::string& clip)
     if (stroke.round) element += " stroke-linecap=\"round\"";
     if (!stroke.dashes.empty()) {
         std::string lengths;
-        for (double length : stroke.dashes)
-            lengths += (lengths.empty() ? "" : " ") + number(length);
+        for (double length : stroke.dashes) {
+            if (!lengths.empty()) lengths += ' ';
+            lengths += number(length);
+        }
         element += " stroke-dasharray=\"" + lengths + "\"";
     }
     return element + " points=\"" + points_text(stroke.points) + "\"/>\n";

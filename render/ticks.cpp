@@ -9,9 +9,12 @@ namespace sigmaflow::render {
 namespace {
 
 constexpr double slack = 1e-9;  // of a step: lets 0.1 * 3 count as 0.3
-const std::string minus = "\u2212";
+const std::string minus = "\u2212", times = "\u00d7";
 
-double power_of_ten(int exponent) { return std::pow(10.0, exponent); }
+double power_of_ten(int exponent)
+{
+    return std::pow(10.0, exponent);
+}
 
 /// Digits after the point that a multiple of step needs.
 int decimals_of(double step)
@@ -25,7 +28,17 @@ int decimals_of(double step)
 
 std::string integer_text(int value)
 {
-    return (value < 0 ? minus : "") + std::to_string(std::abs(value));
+    std::string text = value < 0 ? minus : "";
+    text += std::to_string(std::abs(value));
+    return text;
+}
+
+std::string power_text(int exponent)
+{
+    std::string text = "10^{";
+    text += integer_text(exponent);
+    text += '}';
+    return text;
 }
 
 /// One label style for the whole axis: plain numbers, or multiples of one power of ten.
@@ -35,13 +48,13 @@ std::string axis_label(double value, double step, double largest)
     if (value == 0) return "0";
     const int exponent = static_cast<int>(std::floor(std::log10(largest) + slack));
     const double unit = power_of_ten(exponent);
-    return fixed_label(value / unit, decimals_of(step / unit)) + "\u00d7" + "10^{" +
-           integer_text(exponent) + "}";
+    return fixed_label(value / unit, decimals_of(step / unit)) + times + power_text(exponent);
 }
 
 int minor_parts(double step)
 {
-    const double mantissa = step / power_of_ten(static_cast<int>(std::floor(std::log10(step) + slack)));
+    const double mantissa =
+        step / power_of_ten(static_cast<int>(std::floor(std::log10(step) + slack)));
     return std::lround(mantissa) == 2 && std::abs(mantissa - 2) < 0.1 ? 4 : 5;
 }
 
@@ -65,7 +78,7 @@ std::string short_decade_label(int mantissa, int exponent)
     if (exponent >= -3 && exponent <= 3)
         return fixed_label(mantissa * power_of_ten(exponent), std::max(0, -exponent));
     if (mantissa == 1) return power_label(exponent);
-    return std::to_string(mantissa) + "\u00d7" + power_label(exponent);
+    return std::to_string(mantissa) + times + power_text(exponent);
 }
 
 }
@@ -85,11 +98,15 @@ std::vector<Tick> linear_ticks(Range range, int most_steps)
     return stepped_ticks(range, step, minor_parts(step));
 }
 
-std::vector<Tick> integer_ticks(Range range, int most_steps)
+double integer_step(double length)
 {
-    double step = std::max(1.0, round_step(range.to - range.from, most_steps));
-    if (step == 2.5) step = 5;
-    return stepped_ticks(range, step, 1);
+    const double step = round_step(length, 8);
+    return step < 1 ? 1 : step == 2.5 ? 5 : step;
+}
+
+std::vector<Tick> integer_ticks(Range range)
+{
+    return stepped_ticks(range, integer_step(range.to - range.from), 1);
 }
 
 std::vector<Tick> log_ticks(Range range)
@@ -106,8 +123,10 @@ std::vector<Tick> log_ticks(Range range)
             if (value < range.from * (1 - slack) || value > range.to * (1 + slack)) continue;
             if (stride > 1 && m > 1) continue;  // no room for minor ticks
             std::string label;
-            if (short_axis && (m == 1 || m == 2 || m == 5)) label = short_decade_label(m, e);
-            else if (m == 1 && e % stride == 0) label = power_label(e);
+            if (short_axis && (m == 1 || m == 2 || m == 5))
+                label = short_decade_label(m, e);
+            else if (m == 1 && e % stride == 0)
+                label = power_label(e);
             labels += !label.empty();
             ticks.push_back({value, label});
         }
@@ -123,7 +142,8 @@ Range round_linear_range(Range data)
     }
     const double step = round_step(data.to - data.from, 6);
     const double minor = step / minor_parts(step);
-    return {minor * std::floor(data.from / minor + 1e-6), minor * std::ceil(data.to / minor - 1e-6)};
+    return {minor * std::floor(data.from / minor + 1e-6),
+            minor * std::ceil(data.to / minor - 1e-6)};
 }
 
 Range round_log_range(Range data)
@@ -154,7 +174,7 @@ std::string power_label(int exponent)
 {
     if (exponent == 0) return "1";
     if (exponent == 1) return "10";
-    return "10^{" + integer_text(exponent) + "}";
+    return power_text(exponent);
 }
 
 }

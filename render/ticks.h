@@ -25,8 +25,9 @@ std::vector<Tick> linear_ticks(Range range, int most_steps = 6);
 /// even those are too few, ticks as on a linear axis. range.from > 0
 std::vector<Tick> log_ticks(Range range);
 
-/// Whole numbers only.
-std::vector<Tick> integer_ticks(Range range, int most_steps = 8);
+/// Whole numbers only, at most 8 steps of integer_step.
+std::vector<Tick> integer_ticks(Range range);
+double integer_step(double length);
 
 /// The smallest range with round ends that holds the given one; a single value gets room around it.
 Range round_linear_range(Range data);

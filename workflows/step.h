@@ -4,8 +4,8 @@
 //   void describe(io::Fields&)                       its parameters, each declared once
 //   void validate(const io::JsonNode&, Plan&)        everything that can be wrong before computing
 //   void run(Context&) const                         the work
-// and one row in the list of steps.cpp. All steps are validated before the first one runs. Steps hand
-// on their results through the context: the state of the suspension and the runs made so far.
+// and one row in the list of steps.cpp. All steps are validated before the first one runs. Steps
+// hand on their results through the context: the state of the suspension and the runs made so far.
 #pragma once
 #include "engine/frame.h"
 #include "engine/model.h"
@@ -19,6 +19,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,10 +52,9 @@ struct Run {
     std::string name;
     Control control;
     double volume_fraction = 0;
-    std::filesystem::path file;  // run.h5
-    std::vector<Sample> series;  // at equal strain intervals
-    double start_up = 0;         // strain of the start-up that averages leave out
-    bool finished = false;       // reached its strain
+    std::filesystem::path file;      // run.h5
+    std::vector<Sample> series;      // at equal strain intervals
+    std::optional<double> start_up;  // averages begin at this strain; none: no averages
 };
 
 /// What the steps work on and hand on.
@@ -67,8 +67,8 @@ struct Context {
     State state;
     std::vector<Run> runs;
 
-    std::string step_name;            // of the step that is running
-    nlohmann::ordered_json results;   // of the step that is running, for summary.json
+    std::string step_name;              // of the step that is running
+    nlohmann::ordered_json results;     // of the step that is running, for summary.json
     std::vector<std::string> problems;  // pictures that could not be drawn
 
     const Run& run(const std::string& name) const;
@@ -93,12 +93,13 @@ StepKind step_kind(std::string_view name, std::string_view summary)
 {
     return {name, summary, [name] {
                 auto step = std::make_shared<T>();
-                return Step{std::string(name), std::string(name), "",
-                            [step](io::Fields& f) { step->describe(f); },
-                            [step](const io::JsonNode& node, Plan& plan) {
-                                step->validate(node, plan);
-                            },
-                            [step](Context& context) { step->run(context); }};
+                return Step{
+                    std::string(name),
+                    std::string(name),
+                    "",
+                    [step](io::Fields& f) { step->describe(f); },
+                    [step](const io::JsonNode& node, Plan& plan) { step->validate(node, plan); },
+                    [step](Context& context) { step->run(context); }};
             }};
 }
 

@@ -31,8 +31,8 @@ void Suspension::check(const io::JsonNode& object)
             throw object.error_at_key(other, "radii already says how large the spheres are");
     const int given = static_cast<int>(packing.radii.size());
     if (object.has("particles") && packing.particles != given)
-        throw object.member("particles").wrong("must be the number of radii, " +
-                                               std::to_string(given));
+        throw object.member("particles")
+            .wrong("must be the number of radii, " + std::to_string(given));
     packing.particles = given;
 }
 

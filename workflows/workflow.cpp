@@ -18,7 +18,8 @@ const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool
     const std::string wanted = with_frames ? "\"shear\"" : "\"shear\" or \"equilibrate\"";
     if (of.empty()) {
         const auto last = std::find_if(runs.rbegin(), runs.rend(), usable);
-        if (last == runs.rend()) throw step.error("needs a run: put a step " + wanted + " before it");
+        if (last == runs.rend())
+            throw step.error("needs a run: put a step " + wanted + " before it");
         of = last->name;
         return *last;
     }
@@ -33,8 +34,8 @@ const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool
 
 const Run& Context::run(const std::string& name) const
 {
-    const auto it = std::find_if(runs.begin(), runs.end(),
-                                 [&](const Run& run) { return run.name == name; });
+    const auto it =
+        std::find_if(runs.begin(), runs.end(), [&](const Run& run) { return run.name == name; });
     if (it == runs.end()) throw Error(ErrorKind::internal, name, "run does not exist");
     return *it;
 }
@@ -72,8 +73,7 @@ void name_steps(std::vector<Step>& steps, const std::vector<io::JsonNode>& nodes
         const std::string name = given->text();
         if (!is_name(name))
             throw given->wrong("must be 1 to 64 letters, digits, _ or -, not beginning with -");
-        if (!used.insert(name).second)
-            throw given->wrong("must be different for every step");
+        if (!used.insert(name).second) throw given->wrong("must be different for every step");
     }
     for (std::size_t i = 0; i < steps.size(); ++i) {
         if (const auto given = nodes[i].find("name")) {

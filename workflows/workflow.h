@@ -2,8 +2,9 @@
 //
 //   {"name": "...", "suspension": {...}, "steps": [{"step": "pack"}, {"step": "shear", ...}, ...]}
 //
-// Reading checks everything that can be checked without computing: keys, types, limits, combinations
-// and that every step finds the state or the run that it needs. Errors: missing, input.
+// Reading checks everything that can be checked without computing: keys, types, limits,
+// combinations and that every step finds the state or the run that it needs. Errors: missing,
+// input.
 #pragma once
 #include "workflows/step.h"
 

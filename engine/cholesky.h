@@ -1,0 +1,42 @@
+// engine/cholesky.h -- sparse Cholesky factor of the resistance matrix.
+//
+// CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM Trans. Math. Softw. 35, 22, 2008), supernodal. The
+// fill-reducing order is found on the graph of the particles (a sixth of the size of the matrix)
+// and kept, with the symbolic analysis, as long as the pattern (the candidate pairs) stays the
+// same. Errors: numerics "not positive definite" with the particle of the first bad pivot; never a
+// fall-back.
+#pragma once
+#include "engine/pairs.h"
+#include "engine/resistance_matrix.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sigmaflow {
+
+class Cholesky {
+public:
+    Cholesky();
+    ~Cholesky();
+    Cholesky(Cholesky&&) noexcept;
+    Cholesky& operator=(Cholesky&&) noexcept;
+
+    /// Sparsity pattern for n particles; pair blocks of a matrix refer to these candidates.
+    void set_pattern(int n, const std::vector<Candidate>& candidates);
+
+    /// Numerical factorisation; PairBlock::candidate indexes the pattern.
+    void factorise(const ResistanceMatrix& matrix);
+
+    /// Solves for several right-hand sides at once; each [n].
+    void solve(const std::vector<const Velocities*>& right_hand_sides,
+               const std::vector<Velocities*>& solutions);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+std::string cholesky_version();
+
+}

@@ -1,0 +1,26 @@
+// render/particle_scene.h -- lit spheres and the box, drawn by VTK.
+#pragma once
+#include "render/framing.h"
+#include "render/image.h"
+
+#include <vector>
+
+namespace sigmaflow::render {
+
+struct ColouredSphere {
+    Sphere sphere;
+    Colour colour;
+};
+
+struct ParticleScene {
+    std::vector<ColouredSphere> spheres;
+    std::array<double, 3> box_length{};  // outline [0, L]; any length 0: no outline
+    Camera camera;
+    bool ambient_occlusion = true;
+    bool antialiasing = true;
+};
+
+/// camera.width x camera.height pixels on white. Error: rendering.
+Image render_scene(const ParticleScene& scene);
+
+}

@@ -1,0 +1,159 @@
+// render/particles.cpp -- a picture of particles: values to colours, camera, scene, and what is
+// around.
+#include "render/particles.h"
+
+#include "engine/error.h"
+#include "render/particle_overlay.h"
+#include "render/particle_scene.h"
+
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <cmath>
+
+namespace sigmaflow::render {
+namespace {
+
+vtkDataArray* point_array(vtkPolyData* particles, const std::string& name, const char* where)
+{
+    vtkPointData* arrays = particles->GetPointData();
+    if (vtkDataArray* array = arrays->GetArray(name.c_str())) return array;
+    std::string names;
+    for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+        if (const char* known = arrays->GetArrayName(i))
+            names += (names.empty() ? "" : ", ") + std::string(known);
+    throw Error(ErrorKind::input, where,
+                "the particles have no array \"" + name +
+                    "\", they have: " + (names.empty() ? "none" : names));
+}
+
+/// The values themselves, or the lengths of vectors (Frobenius norms of tensors).
+std::vector<double> magnitudes(vtkDataArray* array)
+{
+    const int components = array->GetNumberOfComponents();
+    std::vector<double> values(array->GetNumberOfTuples());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (components == 1) {
+            values[i] = array->GetComponent(i, 0);
+            continue;
+        }
+        double sum = 0;
+        for (int c = 0; c < components; ++c) sum += std::pow(array->GetComponent(i, c), 2);
+        values[i] = std::sqrt(sum);
+    }
+    return values;
+}
+
+bool holds_whole_numbers(vtkDataArray* array)
+{
+    const int type = array->GetDataType();
+    return array->GetNumberOfComponents() == 1 && type != VTK_FLOAT && type != VTK_DOUBLE;
+}
+
+ColourScale colour_scale(const ParticleView& view, const std::vector<double>& values,
+                         bool whole_numbers)
+{
+    ColourScale scale;
+    scale.map = view.colour_map;
+    scale.whole_numbers = whole_numbers;
+    scale.label = view.colour_label.empty() ? array_label(view.colour_by) : view.colour_label;
+    scale.range = colour_range(values, whole_numbers);
+    if (view.colour_minimum) scale.range.from = *view.colour_minimum;
+    if (view.colour_maximum) scale.range.to = *view.colour_maximum;
+    if (!std::isfinite(scale.range.to - scale.range.from) || scale.range.from >= scale.range.to)
+        throw Error(ErrorKind::input, "colour range",
+                    "colour_minimum must be below colour_maximum, got " +
+                        std::to_string(scale.range.from) + " and " +
+                        std::to_string(scale.range.to));
+    const double slack = 1e-9 * (scale.range.to - scale.range.from);
+    for (double value : values) {
+        scale.values_below = scale.values_below || value < scale.range.from - slack;
+        scale.values_above = scale.values_above || value > scale.range.to + slack;
+    }
+    return scale;
+}
+
+std::vector<ColouredSphere> coloured_spheres(vtkPolyData* particles,
+                                             const std::vector<double>& values,
+                                             const ColourScale& scale)
+{
+    std::vector<ColouredSphere> spheres(values.size());
+    if (spheres.empty()) return spheres;
+    vtkDataArray* radii = point_array(particles, "radius", "radius");
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+        Sphere& sphere = spheres[i].sphere;
+        particles->GetPoint(i, sphere.centre.data());
+        sphere.radius = radii->GetComponent(i, 0);
+        const double sum = sphere.centre[0] + sphere.centre[1] + sphere.centre[2];
+        if (!std::isfinite(sum) || !(sphere.radius > 0) || !std::isfinite(sphere.radius))
+            throw Error(ErrorKind::input, "particle " + std::to_string(i),
+                        "position and radius must be finite and the radius > 0, got radius " +
+                            std::to_string(sphere.radius));
+        spheres[i].colour = scale.colour(values[i]);
+    }
+    return spheres;
+}
+
+void check(const ParticleView& view)
+{
+    for (int size : {view.width, view.height})
+        if (size < 64 || size > 16384)
+            throw Error(ErrorKind::input, "picture",
+                        "the size must be in [64, 16384] pixels, got " + std::to_string(size));
+}
+
+/// Everything that has to be in the picture.
+std::vector<Sphere> contents(const ParticleScene& scene)
+{
+    std::vector<Sphere> spheres;
+    for (const ColouredSphere& s : scene.spheres) spheres.push_back(s.sphere);
+    const auto& length = scene.box_length;
+    for (int corner = 0; corner < 8; ++corner)
+        if (length[0] > 0 && length[1] > 0 && length[2] > 0)
+            spheres.push_back({{corner & 1 ? length[0] : 0, corner & 2 ? length[1] : 0,
+                                corner & 4 ? length[2] : 0},
+                               0});
+    if (spheres.empty())
+        throw Error(ErrorKind::input, "picture", "there are no particles and no box to draw");
+    return spheres;
+}
+
+}
+
+Image render_particles(vtkPolyData* particles, const ParticleView& view)
+{
+    check(view);
+    std::vector<double> values;
+    bool whole_numbers = false;
+    if (particles->GetNumberOfPoints() > 0) {
+        vtkDataArray* array = point_array(particles, view.colour_by, "colour_by");
+        values = magnitudes(array);
+        whole_numbers = holds_whole_numbers(array);
+    }
+    const ColourScale scale = colour_scale(view, values, whole_numbers);
+    const ParticleLayout layout =
+        particle_layout(view.width, view.height, !view.title.empty(), view.colour_bar, view.triad);
+    ParticleScene scene;
+    scene.spheres = coloured_spheres(particles, values, scale);
+    if (view.outline) scene.box_length = view.box_length;
+    scene.ambient_occlusion = view.ambient_occlusion;
+    scene.antialiasing = view.antialiasing;
+    const Rectangle& room = layout.particles;
+    scene.camera = frame_spheres(contents(scene), static_cast<int>(room.width()),
+                                 static_cast<int>(room.height()));
+
+    const Fonts fonts;
+    Drawing drawing{view.width, view.height, {}};
+    if (view.colour_bar) draw_colour_bar(drawing, fonts, scale, layout);
+    if (view.triad) draw_triad(drawing, fonts, layout);
+    if (!view.title.empty()) draw_title(drawing, fonts, view.title, layout);
+
+    Image image(view.width, view.height);
+    const Image spheres = render_scene(scene);
+    paste(image, spheres, std::lround((room.left + room.right - spheres.width) / 2),
+          std::lround((room.top + room.bottom - spheres.height) / 2));
+    rasterise(drawing, image);
+    return image;
+}
+
+}

@@ -1,0 +1,105 @@
+#include "workflows/averages.h"
+
+#include "engine/statistics.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace sigmaflow::workflows {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json quantity(double mean, double error, std::string_view unit)
+{
+    return {{"mean", mean}, {"standard_error", error}, {"unit", unit}};
+}
+
+Json quantity(const Estimate& estimate, std::string_view unit)
+{
+    return quantity(estimate.mean, estimate.standard_error, unit);
+}
+
+/// Strain over time, with the scatter of the time that each interval took.
+Estimate rate_over_time(std::span<const Sample> samples)
+{
+    std::vector<double> taken;
+    for (std::size_t i = 1; i < samples.size(); ++i)
+        taken.push_back(samples[i].time - samples[i - 1].time);
+    Estimate result = estimate_mean(taken);
+    if (samples.size() < 2 || !(result.mean > 0)) return {};
+    const double rate = (samples.back().strain - samples.front().strain) /
+                        (samples.back().time - samples.front().time);
+    result.standard_error *= rate / result.mean;
+    result.mean = rate;
+    return result;
+}
+
+}
+
+std::span<const Sample> stationary_part(const Run& run)
+{
+    std::size_t first = 0;
+    while (run.start_up && first < run.series.size() &&
+           run.series[first].strain < *run.start_up - 1e-9)
+        ++first;
+    return std::span(run.series).subspan(first);
+}
+
+std::vector<double> column(std::span<const Sample> samples, double Sample::*value)
+{
+    std::vector<double> result;
+    result.reserve(samples.size());
+    for (const Sample& sample : samples) result.push_back(sample.*value);
+    return result;
+}
+
+void find_start_up(Run& run)
+{
+    const bool imposed_rate = std::holds_alternative<ImposedRate>(run.control);
+    const auto values =
+        column(run.series, imposed_rate ? &Sample::shear_stress : &Sample::shear_rate);
+    if (!values.empty())
+        run.start_up = run.series[static_cast<std::size_t>(start_up_cut(values))].strain;
+}
+
+Json averages_json(const Run& run)
+{
+    const std::span<const Sample> samples = stationary_part(run);
+    const Estimate rate = estimate_mean(column(samples, &Sample::shear_rate));
+    const Estimate stress = estimate_mean(column(samples, &Sample::shear_stress));
+    const Estimate rate_in_time = rate_over_time(samples);
+    const bool imposed_rate = std::holds_alternative<ImposedRate>(run.control);
+    const Estimate& varying = imposed_rate ? stress : rate;
+    const auto viscosity = [&](const Estimate& over) {
+        const double value = stress.mean / over.mean;
+        const double error =
+            std::hypot(stress.standard_error / stress.mean, over.standard_error / over.mean);
+        return quantity(value, std::abs(value) * error, "eta0");
+    };
+
+    Json result;
+    result["averages_from_strain"] = run.start_up.value_or(0);
+    result["samples"] = samples.size();
+    result["effective_samples"] = varying.effective_samples;
+    result["errors_reliable"] = varying.reliable;
+    result["viscosity"] = viscosity(rate);
+    result["viscosity_time_average"] = viscosity(rate_in_time);
+    result["shear_rate_time_average"] = quantity(rate_in_time, "rate0");
+    for (const SampleField& field : sample_fields()) {
+        if (field.name == "strain" || field.name == "time" || field.name == "viscosity") continue;
+        result[std::string(field.name)] =
+            quantity(estimate_mean(column(samples, field.value)), field.unit);
+    }
+    return result;
+}
+
+Json control_json(const Control& control)
+{
+    if (const auto* stress = std::get_if<ImposedStress>(&control))
+        return {{"stress", stress->value}};
+    return {{"rate", std::get<ImposedRate>(control).value}};
+}
+
+}

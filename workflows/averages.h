@@ -1,0 +1,29 @@
+// workflows/averages.h -- averages of a stationary run for summary.json.
+//
+// The series has equal strain intervals, so a plain mean is an average over strain. The average
+// over time of the shear rate is strain over time. Viscosities are stress over mean rate, never the
+// mean of stress over rate.
+#pragma once
+#include "workflows/step.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace sigmaflow::workflows {
+
+/// The samples after the start-up.
+std::span<const Sample> stationary_part(const Run& run);
+
+/// One column of samples.
+std::vector<double> column(std::span<const Sample> samples, double Sample::*value);
+
+/// Sets run.start_up to where the shear rate (or, under an imposed rate, the stress) has become
+/// stationary.
+void find_start_up(Run& run);
+
+/// {"shear_rate": {"mean", "standard_error", "unit", ...}, "viscosity": ..., ...}
+nlohmann::ordered_json averages_json(const Run& run);
+
+/// {"stress": 2} or {"rate": 1}
+nlohmann::ordered_json control_json(const Control& control);
+
+}

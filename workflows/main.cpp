@@ -1,0 +1,94 @@
+// The program `sigmaflow`: the command line, the only catch and the only exit code.
+#include "engine/error.h"
+#include "io/case_file.h"
+#include "workflows/help.h"
+#include "workflows/manifest.h"
+#include "workflows/runner.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+namespace {
+
+using namespace sigmaflow;
+
+constexpr const char* examples = R"(examples:
+  sigmaflow run workflows/quickstart.json             results in out/quickstart
+  sigmaflow run my_flow.json --out results/phi_0.56   results in a folder of your choice
+  sigmaflow steps                                     all steps, the suspension and the model
+  sigmaflow steps shear                               the parameters of one step
+  sigmaflow evaluate case.json                        velocities and stress of one configuration
+
+exit codes: 0 complete, 64 wrong command line, 65 invalid input, 66 input missing, 69 pictures could
+not be drawn, 70 numerical failure, 71 internal error, 73 cannot write, 74 disk full, 75 folder in use)";
+
+/// Prints results; a full disk or a closed pipe must not pass for success.
+void print(const std::string& text)
+{
+    std::cout << text << std::flush;
+    if (!std::cout) throw Error(ErrorKind::file, "standard output", "cannot be written");
+}
+
+void run_command(int argc, char** argv)
+{
+    CLI::App app("sigmaflow: dense frictional suspensions sheared at an imposed stress");
+    app.footer(examples);
+    app.set_version_flag("--version", "sigmaflow " + workflows::version());
+    app.require_subcommand(0, 1);
+
+    workflows::RunOptions options;
+    std::string out, case_file, step;
+    CLI::App* run = app.add_subcommand("run", "run a workflow");
+    run->add_option("WORKFLOW.json", options.workflow, "the workflow")->required();
+    run->add_option(
+        "--out", out,
+        "folder for the results, default out/<name of the workflow file>. An earlier run "
+        "of the same workflow in it is replaced, any other folder must be empty");
+    run->add_flag("-q,--quiet", options.quiet, "no progress, only results and errors");
+    CLI::App* evaluate = app.add_subcommand("evaluate", "evaluate one configuration, print JSON");
+    evaluate->add_option("CASE.json", case_file, "the configuration")->required();
+    CLI::App* steps = app.add_subcommand("steps", "explain steps and parameters");
+    steps->add_option("STEP", step, "a step; default: all");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help_or_version) {
+        app.exit(help_or_version);
+        return print("");
+    }
+
+    if (run->parsed()) {
+        if (run->count("--out")) options.out = out;
+        workflows::run_workflow(options, std::cout);
+        print("");
+    } else if (evaluate->parsed()) {
+        print(io::evaluate_case(case_file));
+    } else if (steps->parsed()) {
+        print(workflows::steps_help(step));
+    } else {
+        print(app.help());
+    }
+}
+
+int complain(const std::string& message, ErrorKind kind)
+{
+    std::cerr << "sigmaflow: error: " << message << "\n";
+    return static_cast<int>(kind);
+}
+
+}
+
+int main(int argc, char** argv)
+{
+    try {
+        run_command(argc, argv);
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        return complain(std::string(error.what()) + " (sigmaflow --help)", ErrorKind::usage);
+    } catch (const Error& error) {
+        return complain(error.what(), error.kind());
+    } catch (const std::exception& error) {
+        return complain(std::string("internal error: ") + error.what(), ErrorKind::internal);
+    } catch (...) {
+        return complain("internal error of unknown kind", ErrorKind::internal);
+    }
+}

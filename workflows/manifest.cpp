@@ -1,0 +1,122 @@
+#include "workflows/manifest.h"
+
+#include "io/atomic_file.h"
+
+#include <H5public.h>
+#include <SuiteSparse_config.h>
+#include <dlfcn.h>
+#include <unistd.h>
+#include <vtkVersionMacros.h>
+#include <CLI/Version.hpp>
+#include <Eigen/Core>
+#include <array>
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+namespace sigmaflow::workflows {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+std::string joined(std::initializer_list<int> numbers)
+{
+    std::string result;
+    for (int number : numbers) result += (result.empty() ? "" : ".") + std::to_string(number);
+    return result;
+}
+
+std::string host_name()
+{
+    std::array<char, 256> name{};
+    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string processor()
+{
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("model name"))
+            if (const auto colon = line.find(": "); colon != std::string::npos)
+                return line.substr(colon + 2);
+    return "unknown";
+}
+
+/// The kernel that OpenBLAS chose for this processor: another one gives other last bits.
+std::string blas_kernel()
+{
+    using Name = const char* (*)();
+    const auto name = reinterpret_cast<Name>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
+    return name ? std::string("OpenBLAS ") + name() : "not OpenBLAS";
+}
+
+}
+
+std::string version()
+{
+    return SIGMAFLOW_VERSION;
+}
+
+Json library_versions()
+{
+    return {{"eigen", joined({EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION})},
+            {"suitesparse", joined({SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION,
+                                    SUITESPARSE_SUBSUB_VERSION})},
+            {"blas", blas_kernel()},
+            {"vtk", VTK_VERSION},
+            {"hdf5", joined({H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE})},
+            {"nlohmann_json", joined({NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                                      NLOHMANN_JSON_VERSION_PATCH})},
+            {"cli11", CLI11_VERSION}};
+}
+
+std::string utc_now()
+{
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text.data();
+}
+
+Manifest::Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file)
+{
+    content_["sigmaflow"] = version();
+    content_["status"] = "running";
+    content_["started"] = utc_now();
+    content_["ended"] = nullptr;
+    content_["workflow_file"] = std::filesystem::absolute(workflow_file).string();
+    content_["seed"] = workflow.suspension->packing.seed;
+    content_["host"] = host_name();
+    content_["processor"] = processor();
+    content_["cores"] = std::thread::hardware_concurrency();
+    content_["compiler"] = SIGMAFLOW_COMPILER;
+    content_["libraries"] = library_versions();
+    content_["workflow"] = workflow.resolved();
+    content_["steps"] = Json::array();
+    content_["files"] = Json::array();
+}
+
+void Manifest::add_step(const Step& step, double wall_seconds)
+{
+    content_["steps"].push_back(
+        {{"name", step.name}, {"step", step.kind}, {"wall_seconds", wall_seconds}});
+}
+
+void Manifest::write(RunFolder& folder, const std::string& status, const std::string& error)
+{
+    content_["status"] = status;
+    if (status != "running") content_["ended"] = utc_now();
+    if (!error.empty()) content_["error"] = error;
+    content_["files"] = Json::array();
+    for (const RunFolder::Entry& entry : folder.files())
+        content_["files"].push_back({{"name", entry.name}, {"size", entry.size}});
+    // paths and host names need not be UTF-8
+    io::write_file(folder.path() / manifest_name,
+                   content_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}

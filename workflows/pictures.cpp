@@ -1,0 +1,75 @@
+#include "workflows/pictures.h"
+
+#include "io/atomic_file.h"
+
+#include <array>
+#include <cstdio>
+#include <utility>
+
+namespace sigmaflow::workflows {
+
+void draw_or_note(Context& context, const std::function<void()>& draw)
+{
+    try {
+        draw();
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::rendering) throw;
+        context.problems.push_back(context.step_name + ": " + error.what());
+        context.progress.note(context.problems.back());
+    }
+}
+
+void write_plot(Context& context, const std::string& name, const render::Plot& plot)
+{
+    io::write_file(context.folder.file(name + ".svg"), render::plot_svg(plot));
+    draw_or_note(context, [&] {
+        const render::Image image = render::render_plot(plot);
+        render::write_png(context.folder.file(name + ".png"), image);
+    });
+}
+
+void PictureSize::describe(io::Fields& f)
+{
+    f("width", width, io::Integers{64, 16384}, "pixels", "width of the picture");
+    f("height", height, io::Integers{64, 16384}, "pixels", "height of the picture");
+}
+
+std::string short_number(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
+std::string title_text(double volume_fraction, const Control& control, int particles)
+{
+    std::string imposed;
+    if (const auto* stress = std::get_if<ImposedStress>(&control))
+        imposed = "$σ$/$σ$_{0} = " + short_number(stress->value);
+    else
+        imposed = "$γ̇$/$γ̇$_{0} = " + short_number(std::get<ImposedRate>(control).value);
+    return "$ϕ$ = " + short_number(volume_fraction) + ", " + imposed +
+           ", $n$ = " + std::to_string(particles);
+}
+
+std::string axis_text(const SampleField& field)
+{
+    static constexpr std::array<std::pair<std::string_view, const char*>, 6> texts{{
+        {"strain", "strain $γ$"},
+        {"time", "time $t$ $γ̇$_{0}"},
+        {"shear_rate", "shear rate $γ̇$/$γ̇$_{0}"},
+        {"shear_stress", "shear stress $σ$/$σ$_{0}"},
+        {"viscosity", "viscosity $η$/$η$_{0}"},
+        {"contact_number", "contact number $Z$"},
+    }};
+    for (const auto& [name, text] : texts)
+        if (name == field.name) return text;
+    std::string result(field.name);
+    for (char& c : result)
+        if (c == '_') c = ' ';
+    if (field.unit == "sigma0") return result + " / $σ$_{0}";
+    if (field.unit.empty() || field.unit == "-") return result;
+    return result + " [" + std::string(field.unit) + "]";
+}
+
+}

@@ -1,0 +1,106 @@
+#include "workflows/progress.h"
+
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace sigmaflow::workflows {
+
+namespace {
+
+double seconds_between(std::chrono::steady_clock::time_point from,
+                       std::chrono::steady_clock::time_point to)
+{
+    return std::chrono::duration<double>(to - from).count();
+}
+
+void print(const std::string& text)
+{
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+}
+
+}
+
+std::string duration_text(double seconds)
+{
+    const long total = std::lround(std::clamp(seconds, 0., 1e9));
+    char text[48];
+    if (total < 60)
+        std::snprintf(text, sizeof text, "%ld s", total);
+    else if (total < 3600)
+        std::snprintf(text, sizeof text, "%ld min %02ld s", total / 60, total % 60);
+    else
+        std::snprintf(text, sizeof text, "%ld h %02ld min", total / 3600, total / 60 % 60);
+    return text;
+}
+
+Progress Progress::for_stderr(bool quiet)
+{
+    if (quiet) return Progress(Style::quiet);
+    // NO_COLOR (no-color.org) asks for no escape sequences, and the bar needs one
+    const char* no_colour = std::getenv("NO_COLOR");
+    const char* terminal = std::getenv("TERM");
+    const bool plain = (no_colour && *no_colour) || (terminal && !std::strcmp(terminal, "dumb"));
+    return Progress(isatty(STDERR_FILENO) && !plain ? Style::bar : Style::lines);
+}
+
+void Progress::begin(const std::string& task)
+{
+    task_ = task;
+    started_ = shown_ = Clock::now();
+    shown_fraction_ = 0;
+}
+
+void Progress::update(double fraction, const std::string& details)
+{
+    if (style_ == Style::quiet) return;
+    fraction = std::isfinite(fraction) ? std::clamp(fraction, 0., 1.) : 0;
+    const Clock::time_point now = Clock::now();
+    const double since = seconds_between(shown_, now), elapsed = seconds_between(started_, now);
+    const std::string left =
+        fraction > 0.01 && elapsed > 1
+            ? ", " + duration_text(elapsed * (1 - fraction) / fraction) + " left"
+            : "";
+    if (style_ == Style::lines) {
+        const bool due = since >= 10 || (since >= 1 && fraction >= shown_fraction_ + 0.1);
+        if (!due) return;
+        char percent[16];
+        std::snprintf(percent, sizeof percent, "%3.0f %%", 100 * fraction);
+        print(task_ + ": " + percent + left + "; " + details + "\n");
+    } else {
+        if (since < 0.1) return;
+        constexpr int width = 24;
+        const int full = static_cast<int>(fraction * width);
+        char percent[16];
+        std::snprintf(percent, sizeof percent, "%3.0f %%", 100 * fraction);
+        print("\r\033[K" + task_ + " [" + std::string(full, '#') + std::string(width - full, '.') +
+              "] " + percent + left + "; " + details);
+        bar_drawn_ = true;
+    }
+    shown_ = now;
+    shown_fraction_ = fraction;
+}
+
+void Progress::end(const std::string& result)
+{
+    note(task_ + ": " + result + " (" + duration_text(seconds_between(started_, Clock::now())) +
+         ")");
+}
+
+void Progress::note(const std::string& text)
+{
+    clear();
+    if (style_ != Style::quiet) print(text + "\n");
+}
+
+void Progress::clear()
+{
+    if (bar_drawn_) print("\r\033[K");
+    bar_drawn_ = false;
+}
+
+}

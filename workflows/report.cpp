@@ -1,0 +1,90 @@
+#include "workflows/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace sigmaflow::workflows {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+double number_or_nan(const Json& object, const char* key)
+{
+    const auto it = object.find(key);
+    return it != object.end() && it->is_number() ? it->get<double>() : std::nan("");
+}
+
+std::string padded(std::string text, std::size_t width)
+{
+    text.resize(std::max(width, text.size()), ' ');
+    return text;
+}
+
+std::string format(const char* pattern, double value)
+{
+    char text[64];
+    std::snprintf(text, sizeof text, pattern, value);
+    return text;
+}
+
+}
+
+std::string with_error(double value, double error)
+{
+    if (!std::isfinite(value)) return "undefined";
+    if (!(error > 0) || !std::isfinite(error)) return format("%.4g", value);
+    const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
+    if (decimals < 0 || decimals > 6 || std::abs(value) >= 1e6)
+        return format("%.3g", value) + " +- " + format("%.1e", error);
+    char text[96];
+    std::snprintf(text, sizeof text, "%.*f +- %.*f", decimals, value, decimals, error);
+    return text;
+}
+
+std::string one_line(const Json& step)
+{
+    std::string result = step.contains("outcome") ? step["outcome"].get<std::string>() : "done";
+    if (step.contains("strain"))
+        result += ", strain " + format("%.4g", number_or_nan(step, "strain"));
+    if (step.contains("shear_rate") && step["shear_rate"].is_object())
+        result += ", shear rate " + with_error(number_or_nan(step["shear_rate"], "mean"),
+                                               number_or_nan(step["shear_rate"], "standard_error"));
+    if (step.contains("last_shear_rate"))
+        result += ", shear rate " + format("%.4g", number_or_nan(step, "last_shear_rate"));
+    if (step.contains("volume_fraction") && !step.contains("outcome"))
+        result += ", volume fraction " + format("%.4g", number_or_nan(step, "volume_fraction"));
+    return result;
+}
+
+std::string table(const Json& summary)
+{
+    std::string text;
+    for (const auto& [name, step] : summary["steps"].items()) {
+        const bool has_means = std::any_of(step.begin(), step.end(), [](const Json& entry) {
+            return entry.is_object() && entry.contains("mean");
+        });
+        if (!has_means) continue;
+        text += name + ": " + one_line(step);
+        if (step.contains("averages_from_strain"))
+            text += ", averages from strain " +
+                    format("%.4g", number_or_nan(step, "averages_from_strain"));
+        text += "\n";
+        for (const auto& [quantity, entry] : step.items()) {
+            if (!entry.is_object() || !entry.contains("mean")) continue;
+            text += "  " + padded(quantity, 30) +
+                    padded(with_error(number_or_nan(entry, "mean"),
+                                      number_or_nan(entry, "standard_error")),
+                           24) +
+                    entry["unit"].get<std::string>() + "\n";
+        }
+        if (step.contains("rms_deviation"))
+            text += "  " + padded("rms deviation from uniform", 30) +
+                    format("%.4g", number_or_nan(step, "rms_deviation")) + "\n";
+    }
+    return text;
+}
+
+}

@@ -1,0 +1,20 @@
+// workflows/runner.h -- runs the steps of a workflow one after the other.
+#pragma once
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+
+namespace sigmaflow::workflows {
+
+struct RunOptions {
+    std::filesystem::path workflow;            // the JSON file
+    std::optional<std::filesystem::path> out;  // default: out/<name of the file>
+    bool quiet = false;                        // no progress on stderr
+};
+
+/// Runs the workflow and prints a short table of results. manifest.json and summary.json are
+/// written atomically, the summary after every step. Errors: missing, input (before anything is
+/// computed), file, no_space, locked, numerics; rendering after everything else is complete.
+void run_workflow(const RunOptions& options, std::ostream& results);
+
+}

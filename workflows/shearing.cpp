@@ -1,0 +1,167 @@
+#include "workflows/shearing.h"
+
+#include "io/model_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sigmaflow::workflows {
+
+namespace {
+
+constexpr double jammed_viscosity = 1e5;  // [eta0]
+constexpr double most_outputs = 1e7;
+
+/// Strains that differ by rounding only are the same.
+bool reached(double strain, double target)
+{
+    return strain >= target - 1e-12 * std::max(1., target);
+}
+
+/// Multiples of an interval that still lie ahead.
+class OutputClock {
+public:
+    explicit OutputClock(double interval) : interval_(interval) {}
+
+    double next() const
+    {
+        return interval_ > 0 ? static_cast<double>(count_) * interval_
+                             : std::numeric_limits<double>::infinity();
+    }
+    /// True once for every multiple that is reached.
+    bool due(double strain)
+    {
+        if (!reached(strain, next())) return false;
+        while (reached(strain, next())) ++count_;
+        return true;
+    }
+
+private:
+    double interval_;
+    long count_ = 0;
+};
+
+std::string details_text(const State& state, double shear_rate)
+{
+    char text[80];
+    std::snprintf(text, sizeof text, "strain %.3f, shear rate %.4g", state.strain, shear_rate);
+    return text;
+}
+
+}
+
+void ShearingParameters::describe(io::Fields& f)
+{
+    f("stress", stress, io::above_to(0, 1e9), "sigma0",
+      "imposed shear stress; either this or rate");
+    f("rate", rate, io::above_to(0, 1e9), "rate0", "imposed shear rate; either this or stress");
+    f("scheme", stepping.scheme,
+      io::Words<Scheme>{{"heun", Scheme::heun}, {"euler", Scheme::euler}},
+      "time stepping: predictor-corrector of second order, or Euler");
+    f("displacement", stepping.displacement, io::above_to(0, 0.1), "a",
+      "nothing moves by more than this in one step");
+    f("series_interval", series_interval, io::between(1e-6, 1e3), "strain",
+      "strain between two rows of the time series");
+    f("maximum_time", maximum_time, io::above(0), "1/rate0",
+      "ends the step in any case; default: strain * 1e5/stress, or 1.01 * strain/rate");
+}
+
+Control ShearingParameters::check(const io::JsonNode& node, const Plan& plan, double strain) const
+{
+    plan.need_state(node);
+    const Control control = io::checked_control(stress, rate, plan.suspension.model, node);
+    if (strain / series_interval > most_outputs)
+        throw node.error_at_key("series_interval", "gives more than 1e7 rows, the strain is " +
+                                                       io::number_text(strain));
+    return control;
+}
+
+double ShearingParameters::time_limit(double strain) const
+{
+    if (maximum_time) return *maximum_time;
+    return stress ? strain * jammed_viscosity / *stress : 1.01 * strain / *rate;
+}
+
+std::string_view outcome_name(Outcome outcome)
+{
+    switch (outcome) {
+        case Outcome::flowing:
+            return "flowing";
+        case Outcome::jammed:
+            return "jammed";
+        case Outcome::undecided:
+            break;
+    }
+    return "undecided";
+}
+
+namespace {
+
+/// Makes the outputs that are due at the strain of the state and says when to stop.
+class Recorder {
+public:
+    Recorder(const ShearingTask& task, const ShearingOutput& output)
+        : task_(task), output_(output), samples_(task.series_interval), frames_(task.frame_interval)
+    {
+    }
+
+    /// The next output, or the end.
+    double target() const { return std::min({samples_.next(), frames_.next(), task_.strain}); }
+
+    /// Evaluates the state, in detail if there is something to record.
+    Evaluation record(State& state, const Model& model, Workspace& workspace)
+    {
+        // a step that was cut at an output lands on it but for rounding
+        if (reached(state.strain, target()) && reached(target(), state.strain))
+            state.strain = target();
+        arrived_ = reached(state.strain, task_.strain);
+        last_ = arrived_ || state.time >= task_.time;
+        const bool on_grid = samples_.due(state.strain), frame = frames_.due(state.strain);
+        if (!on_grid && !frame && !last_) return evaluate(state, model, task_.control, workspace);
+
+        DetailedEvaluation detailed = evaluate_in_detail(state, model, task_.control, workspace);
+        if (on_grid || last_) output_.sample(make_sample(state, detailed), on_grid);
+        if (on_grid && output_.enough && output_.enough()) last_ = true;
+        if (frame || last_) output_.frame(make_frame(state, detailed));
+        return std::move(detailed.evaluation);
+    }
+
+    bool last() const { return last_; }
+    bool arrived() const { return arrived_; }
+
+private:
+    const ShearingTask& task_;
+    const ShearingOutput& output_;
+    OutputClock samples_, frames_;
+    bool last_ = false, arrived_ = false;
+};
+
+}
+
+ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
+                     const ShearingOutput& output, Progress& progress)
+{
+    state.strain = state.time = 0;
+    Workspace workspace;
+    Recorder recorder(task, output);
+    ShearingResult result;
+    try {
+        for (;; ++result.steps) {
+            const Evaluation evaluation = recorder.record(state, model, workspace);
+            if (recorder.last()) break;
+            progress.update(std::max(state.strain / task.strain, state.time / task.time),
+                            details_text(state, evaluation.shear_rate));
+            const StepLimit limit{recorder.target(), task.time};
+            advance(state, model, task.control, task.stepping, limit, evaluation, workspace);
+        }
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::numerics) throw;
+        throw error.within("at strain " + io::number_text(state.strain) + ", step " +
+                           std::to_string(result.steps));
+    }
+    if (recorder.arrived()) result.outcome = Outcome::flowing;
+    return result;
+}
+
+}

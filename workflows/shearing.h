@@ -1,0 +1,62 @@
+// workflows/shearing.h -- the loop that shears a suspension, shared by all shearing steps.
+//
+// evaluate -> output if one is due -> advance to the next output at the latest. Samples and frames
+// are made exactly at multiples of their strain intervals, the first at strain 0 and the last at
+// the end. The strain and the time of the state count from the beginning of the step.
+#pragma once
+#include "engine/evaluation.h"
+#include "engine/step.h"
+#include "workflows/step.h"
+
+#include <functional>
+#include <optional>
+
+namespace sigmaflow::workflows {
+
+/// Parameters that every shearing step has.
+struct ShearingParameters {
+    std::optional<double> stress, rate;
+    Stepping stepping;
+    double series_interval = 0.01;
+    std::optional<double> maximum_time;
+
+    void describe(io::Fields& f);
+    /// Exactly one of stress and rate, allowed by the model; the length in range of the interval.
+    Control check(const io::JsonNode& node, const Plan& plan, double strain) const;
+    /// The time [1/rate0] after which the step ends in any case: maximum_time, or what the strain
+    /// takes at a viscosity of 1e5 eta0 (stress control), or a little more than it takes (rate
+    /// control).
+    double time_limit(double strain) const;
+};
+
+struct ShearingTask {
+    Control control;
+    Stepping stepping;
+    double strain = 0;           // the end [-]
+    double time = 0;             // at the latest [1/rate0]
+    double series_interval = 0;  // [-]
+    double frame_interval = 0;   // [-]; 0: only the last frame
+};
+
+/// How a shearing step ended. A jammed suspension is a result, not an error.
+enum class Outcome { flowing, jammed, undecided };
+std::string_view outcome_name(Outcome outcome);
+
+struct ShearingOutput {
+    /// `on_grid`: at a multiple of the series interval, unlike the last sample of a run that ran
+    /// out of time.
+    std::function<void(const Sample&, bool on_grid)> sample;
+    std::function<void(const Frame&)> frame;
+    std::function<bool()> enough;  // asked after each sample; true ends the run
+};
+
+struct ShearingResult {
+    Outcome outcome = Outcome::undecided;
+    long steps = 0;
+};
+
+/// Shears `state` in place. Errors: numerics, with strain and step number as context.
+ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
+                     const ShearingOutput& output, Progress& progress);
+
+}

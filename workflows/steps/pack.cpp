@@ -1,0 +1,55 @@
+// Step "pack": a random packing without overlaps at exactly the asked volume fraction.
+#include "engine/packing.h"
+#include "io/case_file.h"
+#include "workflows/steps.h"
+
+#include <cmath>
+
+namespace sigmaflow::workflows {
+
+namespace {
+
+struct Pack {
+    std::optional<double> volume_fraction;
+    std::optional<std::uint64_t> seed;
+
+    void describe(io::Fields& f)
+    {
+        f("volume_fraction", volume_fraction, io::above_to(0, 0.64), "-",
+          "instead of that of the suspension");
+        f("seed", seed, "instead of that of the suspension");
+    }
+
+    void validate(const io::JsonNode&, Plan& plan) { plan.has_state = true; }
+
+    void run(Context& context) const
+    {
+        PackingParameters packing = context.suspension.packing;
+        packing.volume_fraction = volume_fraction.value_or(packing.volume_fraction);
+        packing.seed = seed.value_or(packing.seed);
+        // the smallest xi goes from about -1 to -0.01, ever more slowly
+        const auto report = [&](int iteration, double smallest_xi) {
+            const double fraction =
+                1 - std::log(std::max(-smallest_xi, 0.01) / 0.01) / std::log(100);
+            context.progress.update(fraction, "iteration " + std::to_string(iteration) +
+                                                  ", smallest gap " + io::number_text(smallest_xi));
+        };
+        context.state = random_packing(packing, report);
+        io::write_case(context.folder.file(context.step_name + "/state.json"), context.state,
+                       context.suspension.model, ImposedStress{1});
+        context.results["particles"] = context.state.size();
+        context.results["volume_fraction"] = sigmaflow::volume_fraction(context.state);
+        context.results["seed"] = packing.seed;
+        const Vec3& box = context.state.box.length;
+        context.results["box"] = {box.x(), box.y(), box.z()};
+    }
+};
+
+}
+
+StepKind pack_step()
+{
+    return step_kind<Pack>("pack", "random packing of the suspension, without overlaps");
+}
+
+}

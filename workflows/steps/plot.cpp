@@ -1,0 +1,82 @@
+// Step "plot": a scalar of the time series against strain or time.
+#include "engine/statistics.h"
+#include "workflows/averages.h"
+#include "workflows/pictures.h"
+#include "workflows/steps.h"
+
+namespace sigmaflow::workflows {
+
+namespace {
+
+const SampleField& field_named(std::string_view name)
+{
+    for (const SampleField& field : sample_fields())
+        if (field.name == name) return field;
+    throw Error(ErrorKind::internal, std::string(name), "no such scalar");
+}
+
+struct Plot {
+    std::string of, x = "strain", y = "shear_rate";
+    bool logarithmic = false;
+    PictureSize size;
+
+    void describe(io::Fields& f)
+    {
+        std::vector<std::string_view> names;
+        for (const SampleField& field : sample_fields()) names.push_back(field.name);
+        f("of", of, 64, "name of a shearing step; default: the last one before this step");
+        f("y", y, names, "scalar of the time series");
+        f("x", x, std::vector<std::string_view>{"strain", "time"}, "against strain or time");
+        f("logarithmic", logarithmic, "logarithmic y axis");
+        size.describe(f);
+    }
+
+    void validate(const io::JsonNode& node, Plan& plan) { plan.need_run(node, of, false); }
+
+    /// The mean after the start-up with its standard error, and the start-up shaded.
+    void mark_mean(const Run& run, const std::vector<double>& x_values, render::Plot& plot) const
+    {
+        const std::span<const Sample> part = stationary_part(run);
+        if (!run.start_up || part.empty()) return;
+        const Estimate mean = estimate_mean(column(part, field_named(y).value));
+        const double from = part.front().*field_named(x).value, to = x_values.back();
+        const double low = mean.mean - mean.standard_error, high = mean.mean + mean.standard_error;
+        if (from > x_values.front()) plot.spans.push_back({x_values.front(), from, "start-up"});
+        plot.bands.push_back({"standard error", {from, to}, {low, low}, {high, high}, {}});
+        render::Series line;
+        line.label = "mean " + short_number(mean.mean) + " ± " + short_number(mean.standard_error);
+        line.x = {from, to};
+        line.y = {mean.mean, mean.mean};
+        line.line = render::Line::dashed;
+        plot.series.push_back(std::move(line));
+    }
+
+    void run(Context& context) const
+    {
+        const Run& run = context.run(of);
+        render::Plot plot;
+        plot.width = size.width;
+        plot.height = size.height;
+        plot.title = title_text(run.volume_fraction, run.control, context.state.size());
+        plot.x.title = axis_text(field_named(x));
+        plot.y.title = axis_text(field_named(y));
+        plot.y.logarithmic = logarithmic;
+        render::Series data;
+        data.x = column(run.series, field_named(x).value);
+        data.y = column(run.series, field_named(y).value);
+        data.line_width = 2;
+        const std::vector<double> x_values = data.x;
+        plot.series.push_back(std::move(data));
+        if (!x_values.empty()) mark_mean(run, x_values, plot);
+        write_plot(context, context.step_name, plot);
+    }
+};
+
+}
+
+StepKind plot_step()
+{
+    return step_kind<Plot>("plot", "curve of a scalar with its mean, as PNG and SVG");
+}
+
+}

@@ -1,0 +1,70 @@
+// Step "shear": shear at an imposed stress or rate and record what happens.
+#include "workflows/averages.h"
+#include "workflows/run_files.h"
+#include "workflows/shearing.h"
+#include "workflows/steps.h"
+
+namespace sigmaflow::workflows {
+
+namespace {
+
+struct Shear {
+    ShearingParameters shearing;
+    double strain = 5, frame_interval = 0.25;
+
+    void describe(io::Fields& f)
+    {
+        f("strain", strain, io::above_to(0, 1e4), "-", "strain of this step, counted from 0");
+        shearing.describe(f);
+        f("frame_interval", frame_interval, io::between(1e-6, 1e4), "strain",
+          "strain between two stored frames of all particles");
+    }
+
+    void validate(const io::JsonNode& node, Plan& plan)
+    {
+        const Control control = shearing.check(node, plan, strain);
+        constexpr double most_frames = 99999;
+        if (strain / frame_interval > most_frames)
+            throw node.error_at_key(
+                "frame_interval",
+                "gives more than 99999 frames, the strain is " + io::number_text(strain));
+        plan.runs.push_back({plan.step_name, control, strain, true});
+    }
+
+    void run(Context& context) const
+    {
+        const Control control = shearing.rate ? Control(ImposedRate{*shearing.rate})
+                                              : Control(ImposedStress{*shearing.stress});
+        RunFiles files(context, control);
+        const ShearingOutput output{
+            [&](const Sample& sample, bool on_grid) { files.append(sample, on_grid); },
+            [&](const Frame& frame) { files.append(frame, true); },
+            {}};
+        const ShearingTask task{control,
+                                shearing.stepping,
+                                strain,
+                                shearing.time_limit(strain),
+                                shearing.series_interval,
+                                frame_interval};
+        const ShearingResult result =
+            shear(context.state, context.suspension.model, task, output, context.progress);
+        Run& run = files.finish();
+        find_start_up(run);
+        context.results["control"] = control_json(control);
+        context.results["outcome"] = outcome_name(result.outcome);
+        context.results["volume_fraction"] = run.volume_fraction;
+        context.results["strain"] = context.state.strain;
+        context.results["time"] = context.state.time;
+        context.results["steps"] = result.steps;
+        context.results.update(averages_json(run));
+    }
+};
+
+}
+
+StepKind shear_step()
+{
+    return step_kind<Shear>("shear", "shear at an imposed stress or rate and record the flow");
+}
+
+}
