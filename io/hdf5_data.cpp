@@ -59,7 +59,8 @@ std::string place_of(hid_t object, const std::string& entry)
     std::array<char, 1024> file{}, path{};
     H5Fget_name(object, file.data(), file.size());
     H5Iget_name(object, path.data(), path.size());
-    return std::string(file.data()) + ':' + path.data() + '@' + entry;
+    const std::string object_path = std::strcmp(path.data(), "/") == 0 ? "" : path.data();
+    return std::string(file.data()) + ':' + object_path + '/' + entry;
 }
 
 Hdf5Handle written(hid_t id, Hdf5Handle::Close close, const std::string& where)
@@ -177,7 +178,7 @@ Hdf5Group Hdf5Group::open_group(const std::string& name) const
 
 std::string Hdf5Group::where(const std::string& entry) const
 {
-    return file_.string() + ':' + name_ + '/' + entry;
+    return file_.string() + ':' + name_ + (entry.empty() ? "" : '/' + entry);
 }
 
 void Hdf5Group::link(const std::string& name, const Hdf5Group& other,

@@ -3,6 +3,7 @@
 #include "io/particles_vtp.h"
 
 #include <vtkCallbackCommand.h>
+#include <vtkExecutive.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
@@ -78,6 +79,7 @@ vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path)
     reader->AddObserver(vtkCommand::ErrorEvent, command);
     reader->SetReaderErrorObserver(command);
     reader->SetParserErrorObserver(command);
+    reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, command);
     reader->ReadFromInputStringOn();
     reader->SetInputString(read_file(path));
     reader->Update();

@@ -95,7 +95,9 @@ Point Camera::project(const Position& p) const
 Camera frame_spheres(const std::vector<Sphere>& spheres, int width, int height)
 {
     Position low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    double largest_radius = 0;
     for (const Sphere& sphere : spheres) {
+        largest_radius = std::max(largest_radius, sphere.radius);
         for (int d = 0; d < 3; ++d) {
             low[d] = std::min(low[d], sphere.centre[d] - sphere.radius);
             high[d] = std::max(high[d], sphere.centre[d] + sphere.radius);
@@ -104,7 +106,10 @@ Camera frame_spheres(const std::vector<Sphere>& spheres, int width, int height)
     const Position diagonal = minus(high, low);
     Camera camera;
     camera.focus = plus(low, 0.5, diagonal);
-    camera.distance = 2.4 * std::max(1e-6, std::sqrt(dot(diagonal, diagonal)));
+    // Far enough for a gentle perspective; and VTK's imposters and shadows of spheres are wrong
+    // when a sphere is seen from near by.
+    camera.distance =
+        std::max({1e-6, 2.4 * std::sqrt(dot(diagonal, diagonal)), 50 * largest_radius});
 
     // Moving the camera sideways changes the perspective a little, so this takes a few rounds.
     const ViewAxes axes = view_axes();

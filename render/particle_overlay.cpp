@@ -130,7 +130,7 @@ ParticleLayout particle_layout(int width, int height, bool title, bool colour_ba
 {
     ParticleLayout layout;
     const double unit = std::max(0.28, std::min(width / 1500.0, height / 1080.0));
-    const double margin = 28 * unit, triad_width = 310 * unit, triad_height = 270 * unit;
+    const double margin = 28 * unit, triad_width = 336 * unit, triad_height = 270 * unit;
     const double right = width - (colour_bar ? 350 * unit : margin), bottom = height - margin;
     const double top = title ? 104 * unit : margin;
     layout.unit = unit;

@@ -168,7 +168,7 @@ struct Passes {
         if (scene.ambient_occlusion && radius > 0) {
             occlusion->SetRadius(1.9 * radius);
             occlusion->SetBias(0.05 * radius);
-            occlusion->SetKernelSize(128);
+            occlusion->SetKernelSize(96);
             occlusion->BlurOn();
             occlusion->SetDelegatePass(last);
             last = occlusion;

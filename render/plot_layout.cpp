@@ -83,8 +83,8 @@ Range axis_range(const PlotAxis& axis, Range data, const std::string& where)
     Range range = axis.logarithmic ? round_log_range(data) : round_linear_range(data);
     if (axis.minimum) range.from = *axis.minimum;
     if (axis.maximum) range.to = *axis.maximum;
-    const std::string text =
-        "[" + std::to_string(range.from) + ", " + std::to_string(range.to) + "]";
+    std::string text = "[";
+    text += std::to_string(range.from) + ", " + std::to_string(range.to) + "]";
     if (!std::isfinite(range.from) || !std::isfinite(range.to) || range.from >= range.to)
         throw Error(ErrorKind::input, where, "the range " + text + " is empty");
     if (axis.logarithmic && range.from <= 0)

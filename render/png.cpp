@@ -60,7 +60,9 @@ void write_png(const std::filesystem::path& path, const Image& image)
 {
     // The process id keeps two programs that write the same picture from mixing their bytes.
     std::filesystem::path temporary = path;
-    temporary += "." + std::to_string(getpid()) + ".tmp";
+    temporary += '.';
+    temporary += std::to_string(getpid());
+    temporary += ".tmp";
     write_bytes(temporary, encoded(path, image));
     if (std::rename(temporary.c_str(), path.c_str()) != 0) {
         const int code = errno;

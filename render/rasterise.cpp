@@ -135,6 +135,15 @@ Contour thinned(const Contour& points)
     return kept;
 }
 
+/// Do bars of this half width leave a visible notch where they meet?
+bool opens_a_gap(Point before, Point at, Point after, double radius)
+{
+    const double ux = at.x - before.x, uy = at.y - before.y;
+    const double vx = after.x - at.x, vy = after.y - at.y;
+    const double turn = std::atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+    return radius * std::abs(turn) > 0.1;  // [pixels]
+}
+
 /// A bar around every segment and a disc on every joint. All run the same way round, so that they
 /// add up by the winding rule.
 void add_outline(std::vector<Contour>& contours, const Contour& line, double width, bool round)
@@ -150,9 +159,11 @@ void add_outline(std::vector<Contour>& contours, const Contour& line, double wid
                             {b.x + n.x, b.y + n.y},
                             {a.x + n.x, a.y + n.y}});
     }
-    const std::size_t skipped = round ? 0 : 1;
-    for (std::size_t i = skipped; i + skipped < line.size(); ++i)
-        contours.push_back(circle_contour(line[i], radius));
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const bool is_end = i == 0 || i + 1 == line.size();
+        if (is_end ? round : opens_a_gap(line[i - 1], line[i], line[i + 1], radius))
+            contours.push_back(circle_contour(line[i], radius));
+    }
 }
 
 std::vector<Contour> outline(const Stroke& stroke)

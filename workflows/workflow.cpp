@@ -151,7 +151,11 @@ nlohmann::ordered_json Workflow::resolved() const
     if (!description.empty()) result["description"] = description;
     io::Fields f;
     suspension->describe(f);
-    result["suspension"] = io::write_fields(f.list());
+    auto& written = result["suspension"] = io::write_fields(f.list());
+    if (!suspension->packing.radii.empty()) {  // these exclude each other
+        written.erase("size_ratio");
+        written.erase("small_volume_share");
+    }
     auto& list = result["steps"] = nlohmann::ordered_json::array();
     for (const Step& step : steps) {
         Step copy = step;  // the same parameters behind it

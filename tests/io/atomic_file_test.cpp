@@ -34,10 +34,13 @@ TEST(AtomicFile, NamesThePathAndTheReasonOfTheSystem)
                  [&] { write_file(folder / "none/file", "text"); });
     expect_error(ErrorKind::file, {"Not a directory"},
                  [&] { write_file(folder / "file/below", "text"); });
-    expect_error(ErrorKind::file, {"Is a directory"}, [&] { write_file(folder / "", "text"); });
+    std::filesystem::create_directory(folder / "below");
+    expect_error(ErrorKind::file, {"Is a directory"},
+                 [&] { write_file(folder / "below", "text"); });
     expect_error(ErrorKind::missing, {(folder / "none").string(), "No such file or directory"},
                  [&] { read_file(folder / "none"); });
-    expect_error(ErrorKind::missing, {"Is a directory"}, [&] { read_file(folder / ""); });
+    expect_error(ErrorKind::missing, {"Is a directory"}, [&] { read_file(folder / "below"); });
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"below", "file"}));
 }
 
 TEST(AtomicFile, ReportsAFullDisk)

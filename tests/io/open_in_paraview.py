@@ -66,9 +66,9 @@ for step in range(FRAMES):
     contacts.UpdatePipeline(0.25 * step)
     at = f" at step {step}"
     check(contacts.GetDataInformation().GetNumberOfCells() == step, "number of contacts" + at)
-    check(names(contacts.CellData) == {"normal_force", "tangential_force", "xi", "sliding", "frictional", "i", "j"},
-          f"contact arrays {names(contacts.CellData)}" + at)
-    if step > 0:
+    if step > 0:  # ParaView lists no arrays of a part without cells
+        check(names(contacts.CellData) == {"normal_force", "tangential_force", "xi", "sliding", "frictional", "i", "j"},
+              f"contact arrays {names(contacts.CellData)}" + at)
         close(contacts.CellData["normal_force"].GetRange(), (step, 1.5 * (step - 1) + step), "normal_force" + at)
         close(contacts.CellData["tangential_force"].GetRange(), (5, 5), "tangential_force" + at)
 

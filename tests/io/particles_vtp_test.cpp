@@ -24,8 +24,12 @@ namespace sigmaflow::io {
 namespace {
 
 using testing_io::expect_error;
-using testing_io::random_frame;
 using testing_io::TemporaryFolder;
+
+Frame random_frame(int particles, int contacts, unsigned seed)
+{
+    return testing_io::random_frame(particles, contacts, seed, testing_io::Extremes::finite_norm);
+}
 
 std::set<std::string> names(vtkFieldData* data)
 {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -13,7 +14,10 @@ namespace {
 
 class Numbers {
 public:
-    explicit Numbers(unsigned seed) : random_(seed) {}
+    explicit Numbers(unsigned seed, Extremes extremes = Extremes::any_double)
+        : random_(seed), extremes_(extremes)
+    {
+    }
 
     double next()
     {
@@ -22,7 +26,12 @@ public:
             -0.0,          Limits::denorm_min(), -3 * Limits::denorm_min(),
             Limits::max(), Limits::lowest(),     Limits::infinity(),
             0.1,           1 + Limits::epsilon()};
-        if (random_() % 8 == 0) return awkward.at(random_() % awkward.size());
+        if (random_() % 8 == 0) {
+            const double value = awkward.at(random_() % awkward.size());
+            const bool large = std::abs(value) > 1e150;
+            return large && extremes_ == Extremes::finite_norm ? std::copysign(1e100, value)
+                                                               : value;
+        }
         return std::normal_distribution<double>()(random_);
     }
     double positive() { return std::uniform_real_distribution<double>(0.5, 3)(random_); }
@@ -43,6 +52,7 @@ public:
 
 private:
     std::mt19937_64 random_;
+    Extremes extremes_;
 };
 
 void add(Bits& list, double value)
@@ -79,9 +89,9 @@ Sample random_sample(unsigned seed)
     return sample;
 }
 
-Frame random_frame(int particles, int contacts, unsigned seed)
+Frame random_frame(int particles, int contacts, unsigned seed, Extremes extremes)
 {
-    Numbers numbers(seed);
+    Numbers numbers(seed, extremes);
     const auto n = static_cast<std::size_t>(particles);
     Frame frame;
     State& state = frame.state;

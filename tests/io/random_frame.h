@@ -10,8 +10,12 @@
 
 namespace sigmaflow::testing_io {
 
+/// VTK's reader refuses vectors with an infinite norm.
+enum class Extremes { any_double, finite_norm };
+
 /// `contacts` <= particles - 1 touching pairs.
-Frame random_frame(int particles, int contacts, unsigned seed);
+Frame random_frame(int particles, int contacts, unsigned seed,
+                   Extremes extremes = Extremes::any_double);
 Sample random_sample(unsigned seed);
 
 /// The bits of every number, in a fixed order: two objects are equal if their fingerprints are.

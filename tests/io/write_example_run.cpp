@@ -5,6 +5,7 @@
 #include "io/run_file.h"
 #include "io/series_csv.h"
 
+#include <vtkPolyData.h>
 #include <filesystem>
 #include <iostream>
 
