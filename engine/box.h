@@ -18,6 +18,13 @@ struct Box {
     double volume() const { return length.prod(); }
 };
 
+/// Nearest integer, halves to even; two additions instead of a library call. |x| < 2^51.
+inline double nearest_integer(double x)
+{
+    constexpr double magic = 0x1.8p52;
+    return (x + magic) - magic;
+}
+
 /// Vector from a point to the nearest image of another one, and the row of images it lies in: the
 /// image moves with U + image * shear_rate * Ly e_x. Points may lie any number of cells away.
 struct Separation {
@@ -28,11 +35,11 @@ struct Separation {
 inline Separation separation(const Box& box, const Vec3& from, const Vec3& to)
 {
     Vec3 d = to - from;
-    const double q = -std::round(d.y() / box.length.y());
+    const double q = -nearest_integer(d.y() / box.length.y());
     d.y() += q * box.length.y();
     d.x() += q * box.offset;
-    d.x() -= box.length.x() * std::round(d.x() / box.length.x());
-    d.z() -= box.length.z() * std::round(d.z() / box.length.z());
+    d.x() -= box.length.x() * nearest_integer(d.x() / box.length.x());
+    d.z() -= box.length.z() * nearest_integer(d.z() / box.length.z());
     return {d, static_cast<int>(q)};
 }
 

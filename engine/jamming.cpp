@@ -1,0 +1,54 @@
+#include "engine/jamming.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sigmaflow {
+
+double force_residual(const State& state, const Evaluation& e)
+{
+    std::vector<Vec3> pair_force(e.pairs.size());
+    for (std::size_t k = 0; k < e.pairs.size(); ++k)
+        pair_force[k] = -e.pairs[k].repulsion * e.pairs[k].pair.normal;
+    for (const ContactLoad& c : e.contacts) pair_force[c.pair] += c.force_on_i;
+    std::vector<Vec3> net(state.size(), Vec3::Zero());
+    double largest = 0, residual = 0;
+    for (std::size_t k = 0; k < e.pairs.size(); ++k) {
+        net[e.pairs[k].pair.i] += pair_force[k];
+        net[e.pairs[k].pair.j] -= pair_force[k];
+        largest = std::max(largest, pair_force[k].norm());
+    }
+    for (const Vec3& f : net) residual = std::max(residual, f.norm());
+    return largest > 0 ? residual / largest : 0;
+}
+
+JammingMonitor::JammingMonitor(double stress, const JammingCriterion& criterion)
+    : criterion_(criterion), stress_(stress),
+      duration_(criterion.strain * criterion.viscosity / stress)
+{
+}
+
+bool JammingMonitor::observe(const State& state, const Evaluation& e)
+{
+    if (!started_) {
+        started_ = true;
+        start_time_ = state.time;
+        start_strain_ = state.strain;
+    }
+    const double elapsed = state.time - start_time_;
+    if (elapsed < duration_) return false;
+    window_.duration = elapsed;
+    window_.strain_gain = state.strain - start_strain_;
+    window_.mean_viscosity = window_.strain_gain > 0
+                                 ? stress_ * elapsed / window_.strain_gain
+                                 : std::numeric_limits<double>::infinity();
+    window_.force_residual = force_residual(state, e);
+    window_.jammed = window_.mean_viscosity > criterion_.viscosity &&
+                     window_.force_residual < criterion_.residual;
+    start_time_ = state.time;
+    start_strain_ = state.strain;
+    return window_.jammed;
+}
+
+}

@@ -1,0 +1,67 @@
+#include "engine/jamming.h"
+
+#include "engine/step.h"
+#include "tests/support/random_state.h"
+
+#include <gtest/gtest.h>
+
+namespace sigmaflow {
+
+namespace {
+
+// Shears until the monitor speaks or a strain or time is reached; returns true if jammed.
+bool jams(State& s, double stress, double strain, double time, JammingWindow& window)
+{
+    Workspace workspace;
+    JammingMonitor monitor(stress);
+    const Model model;
+    while (s.strain < strain && s.time < time) {
+        const Evaluation e = evaluate(s, model, ImposedStress{stress}, workspace);
+        if (monitor.observe(s, e)) {
+            window = monitor.last_window();
+            return true;
+        }
+        advance(s, model, ImposedStress{stress}, {}, {strain, time}, e, workspace);
+    }
+    window = monitor.last_window();
+    return false;
+}
+
+}
+
+TEST(Jamming, ASuspensionAboveItsShearJammingDensityJamsAndCarriesTheStressByForces)
+{
+    State s = support::dense_state(50, 0.61, 0, 1);
+    JammingWindow window;
+    ASSERT_TRUE(jams(s, 20, 5, 100, window));
+    EXPECT_LT(s.strain, 0.5);
+    EXPECT_LT(window.force_residual, 0.01);
+    EXPECT_GT(window.mean_viscosity, 1e5);
+    Workspace workspace;
+    const DetailedEvaluation d = evaluate_in_detail(s, {}, ImposedStress{20}, workspace);
+    const Sample sample = make_sample(s, d);
+    EXPECT_NEAR((sample.stress_contact + sample.stress_repulsion) / 20, 1, 1e-3);
+    EXPECT_GT(sample.contact_number, 3);
+}
+
+TEST(Jamming, AFlowingSuspensionIsNotJammed)
+{
+    State s = support::dense_state(50, 0.50, 0, 1);
+    JammingWindow window;
+    EXPECT_FALSE(jams(s, 20, 2, 100, window));
+    EXPECT_GE(s.strain, 2);
+    EXPECT_GT(window.duration, 0);
+    EXPECT_LT(window.mean_viscosity, 1e4);
+}
+
+TEST(Jamming, TheForceResidualOfAnUnbalancedPairIsOne)
+{
+    State s;
+    s.box.length = Vec3(12, 12, 12);
+    s.position = {Vec3(5, 5, 5), Vec3(7.01, 5, 5)};
+    s.radius = {1, 1};
+    Workspace workspace;
+    EXPECT_NEAR(force_residual(s, evaluate(s, {}, ImposedStress{1}, workspace)), 1, 1e-12);
+}
+
+}
