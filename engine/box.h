@@ -7,6 +7,7 @@
 #pragma once
 #include "engine/types.h"
 
+#include <cmath>
 #include <vector>
 
 namespace sigmaflow {
@@ -32,15 +33,33 @@ struct Separation {
     int image;
 };
 
+/// Nearest images in one box for many pairs: the divisions are done once.
+class Images {
+public:
+    explicit Images(const Box& box)
+        : length_(box.length), inverse_(box.length.cwiseInverse()), offset_(box.offset)
+    {
+    }
+
+    Separation separation(const Vec3& from, const Vec3& to) const
+    {
+        Vec3 d = to - from;
+        const double q = -nearest_integer(d.y() * inverse_.y());
+        d.y() += q * length_.y();
+        d.x() += q * offset_;
+        d.x() -= length_.x() * nearest_integer(d.x() * inverse_.x());
+        d.z() -= length_.z() * nearest_integer(d.z() * inverse_.z());
+        return {d, static_cast<int>(q)};
+    }
+
+private:
+    Vec3 length_, inverse_;
+    double offset_;
+};
+
 inline Separation separation(const Box& box, const Vec3& from, const Vec3& to)
 {
-    Vec3 d = to - from;
-    const double q = -nearest_integer(d.y() / box.length.y());
-    d.y() += q * box.length.y();
-    d.x() += q * box.offset;
-    d.x() -= box.length.x() * nearest_integer(d.x() / box.length.x());
-    d.z() -= box.length.z() * nearest_integer(d.z() / box.length.z());
-    return {d, static_cast<int>(q)};
+    return Images(box).separation(from, to);
 }
 
 /// Brings every point into [0, Lx) x [0, Ly) x [0, Lz) and the offset into [0, Lx).

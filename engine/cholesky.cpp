@@ -159,10 +159,12 @@ void Cholesky::factorise(const ResistanceMatrix& matrix)
     Impl& s = *impl_;
     auto* value = static_cast<double*>(s.matrix->x);
     std::memset(value, 0, s.matrix->nzmax * sizeof(double));
-    for (int i = 0; i < s.n; ++i)
+    for (int i = 0; i < s.n; ++i) {
+        const Mat6 own = full(matrix.diagonal[i]);
         for (int c = 0; c < block; ++c)
-            std::memcpy(value + s.slots.diagonal[i * block + c],
-                        matrix.diagonal[i].data() + c * block + c, (block - c) * sizeof(double));
+            std::memcpy(value + s.slots.diagonal[i * block + c], own.data() + c * block + c,
+                        (block - c) * sizeof(double));
+    }
     for (const PairBlock& pair : matrix.pairs) {
         // the lower triangle holds rows of j and columns of i: the transposed block
         const Mat6 lower = off_diagonal(pair).transpose();

@@ -132,30 +132,22 @@ std::vector<ContactLoad> contact_loads(const std::vector<PairState>& pairs, cons
     return loads;
 }
 
-void add_diagonal(const Vec3& n, double normal, double shear, double twist, double turn,
-                  Mat6& block)
-{
-    const Mat3 nn = n * n.transpose();
-    const Mat3 tangential = Mat3::Identity() - nn, cross = twist * cross_matrix(n);
-    block.topLeftCorner<3, 3>() += normal * nn + shear * tangential;
-    block.topRightCorner<3, 3>() += cross;
-    block.bottomLeftCorner<3, 3>() -= cross;
-    block.bottomRightCorner<3, 3>() += turn * tangential;
-}
-
 void assemble_matrix(const State& s, const Evaluation& e, Workspace::Buffers& b)
 {
     ResistanceMatrix& matrix = b.matrix;
     matrix.diagonal.resize(s.size());
-    for (int i = 0; i < s.size(); ++i) matrix.diagonal[i] = drag(s, e.model, i).asDiagonal();
+    for (int i = 0; i < s.size(); ++i) {
+        const Vec6 own = drag(s, e.model, i);
+        matrix.diagonal[i] = {{own[0], own[1], own[2]}, {own[3], own[4], own[5]}, {}};
+    }
     matrix.pairs.clear();
     for (const PairState& p : e.pairs) {
         if (p.factors.L == 0) continue;  // repulsion alone
         const BlockCoefficients& c = b.coefficients[p.pair.candidate];
         const auto [L, l] = p.factors;
         const Vec3& n = p.pair.normal;
-        add_diagonal(n, L * c.xa, l * c.ya, l * c.yb11, l * c.yc11, matrix.diagonal[p.pair.i]);
-        add_diagonal(n, L * c.xa, l * c.ya, -l * c.yb21, l * c.yc22, matrix.diagonal[p.pair.j]);
+        add_pair(matrix.diagonal[p.pair.i], n, L * c.xa, l * c.ya, l * c.yb11, l * c.yc11);
+        add_pair(matrix.diagonal[p.pair.j], n, L * c.xa, l * c.ya, -l * c.yb21, l * c.yc22);
         matrix.pairs.push_back({p.pair.i, p.pair.j, p.pair.candidate, n, L * c.xa, l * c.ya,
                                 l * c.yb11, l * c.yb21, l * c.yc12});
     }

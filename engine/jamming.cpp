@@ -24,7 +24,8 @@ double force_residual(const State& state, const Evaluation& e)
 }
 
 JammingMonitor::JammingMonitor(double stress, const JammingCriterion& criterion)
-    : criterion_(criterion), stress_(stress),
+    : criterion_(criterion),
+      stress_(stress),
       duration_(criterion.strain * criterion.viscosity / stress)
 {
 }
@@ -40,9 +41,8 @@ bool JammingMonitor::observe(const State& state, const Evaluation& e)
     if (elapsed < duration_) return false;
     window_.duration = elapsed;
     window_.strain_gain = state.strain - start_strain_;
-    window_.mean_viscosity = window_.strain_gain > 0
-                                 ? stress_ * elapsed / window_.strain_gain
-                                 : std::numeric_limits<double>::infinity();
+    window_.mean_viscosity = window_.strain_gain > 0 ? stress_ * elapsed / window_.strain_gain
+                                                     : std::numeric_limits<double>::infinity();
     window_.force_residual = force_residual(state, e);
     window_.jammed = window_.mean_viscosity > criterion_.viscosity &&
                      window_.force_residual < criterion_.residual;

@@ -1,10 +1,11 @@
 // engine/jamming.h -- is the suspension jammed under the imposed stress?
 //
-// Judged over windows of time T_w = gamma_w eta_J/sigma. Jammed: in the last window the strain grew by
-// less than gamma_w (the mean viscosity exceeds eta_J) and the forces of contacts and repulsion balance
-// on every particle within a hundredth of the largest pair force. A rate that is negative for a while
-// is elastic recoil and counts with its sign. Jamming is a result, not an error: in a jammed state
-// springs and repulsion carry all of the stress (Mari et al., Phys. Rev. E 91, 052302, 2015, section II).
+// Judged over windows of time T_w = gamma_w eta_J/sigma. Jammed: in the last window the strain grew
+// by less than gamma_w (the mean viscosity exceeds eta_J) and the forces of contacts and repulsion
+// balance on every particle within a hundredth of the largest pair force. A rate that is negative
+// for a while is elastic recoil and counts with its sign. Jamming is a result, not an error: in a
+// jammed state springs and repulsion carry all of the stress (Mari et al., Phys. Rev. E 91, 052302,
+// 2015, section II).
 #pragma once
 #include "engine/evaluation.h"
 #include "engine/state.h"
@@ -12,9 +13,9 @@
 namespace sigmaflow {
 
 struct JammingCriterion {
-    double viscosity = 1e5;   // eta_J [eta0] > 0
-    double strain = 1e-3;     // gamma_w [-] > 0
-    double residual = 0.01;   // [-] > 0
+    double viscosity = 1e5;  // eta_J [eta0] > 0
+    double strain = 1e-3;    // gamma_w [-] > 0
+    double residual = 0.01;  // [-] > 0
 };
 
 /// Largest net force of contacts and repulsion on a particle over the largest pair force [-]; 0 if
@@ -23,10 +24,10 @@ double force_residual(const State& state, const Evaluation& evaluation);
 
 /// What the last complete window said.
 struct JammingWindow {
-    double duration = 0;         // [1/rate0]
-    double strain_gain = 0;      // [-]
-    double mean_viscosity = 0;   // sigma duration/strain_gain [eta0]
-    double force_residual = 0;   // at its end [-]
+    double duration = 0;        // [1/rate0]
+    double strain_gain = 0;     // [-]
+    double mean_viscosity = 0;  // sigma duration/strain_gain [eta0]
+    double force_residual = 0;  // at its end [-]
     bool jammed = false;
 };
 

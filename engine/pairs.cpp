@@ -155,11 +155,12 @@ bool NeighbourList::covers(const State& state, double range) const
     const double drift = state.box.offset - reference_.box.offset - strain * state.box.length.y();
     const double off = drift - std::round(drift / state.box.length.x()) * state.box.length.x();
     if (std::abs(off) > 1e-9 * state.box.length.x()) return false;
+    const Images images(state.box);
     double first = 0, second = 0;  // the two largest squared displacements
     for (int i = 0; i < state.size(); ++i) {
         Vec3 moved = reference_.position[i];
         moved.x() += strain * moved.y();
-        const double w = separation(state.box, moved, state.position[i]).d.squaredNorm();
+        const double w = images.separation(moved, state.position[i]).d.squaredNorm();
         if (w > first) {
             second = first;
             first = w;
@@ -175,10 +176,11 @@ std::vector<Pair> find_pairs(const State& s, double range, const NeighbourList& 
 {
     std::vector<Pair> pairs;
     const auto& candidates = list.candidates();
-    pairs.reserve(candidates.size());
+    pairs.reserve(range > 0 ? candidates.size() : s.radius.size() * 4);
+    const Images images(s.box);
     for (std::size_t k = 0; k < candidates.size(); ++k) {
         const auto [i, j] = candidates[k];
-        const Separation sep = separation(s.box, s.position[i], s.position[j]);
+        const Separation sep = images.separation(s.position[i], s.position[j]);
         const double sum = s.radius[i] + s.radius[j];
         const double reach = sum * (1 + range / 2);
         const double r2 = sep.d.squaredNorm();

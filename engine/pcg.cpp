@@ -30,6 +30,19 @@ __attribute__((always_inline)) inline void block_times(ConstRow B, ConstRow v, R
         for (int r = 0; r < 6; ++r) y[r] += B[6 * c + r] * v[c];
 }
 
+/// y = A_i v
+__attribute__((always_inline)) inline void diagonal_times(const DiagonalBlock& b, ConstRow v, Row y)
+{
+    const auto &t = b.translation, &r = b.rotation;
+    const auto& c = b.coupling;
+    y[0] = t[0] * v[0] + t[3] * v[1] + t[4] * v[2] + c[1] * v[5] - c[2] * v[4];
+    y[1] = t[3] * v[0] + t[1] * v[1] + t[5] * v[2] + c[2] * v[3] - c[0] * v[5];
+    y[2] = t[4] * v[0] + t[5] * v[1] + t[2] * v[2] + c[0] * v[4] - c[1] * v[3];
+    y[3] = r[0] * v[3] + r[3] * v[4] + r[4] * v[5] - c[1] * v[2] + c[2] * v[1];
+    y[4] = r[3] * v[3] + r[1] * v[4] + r[5] * v[5] - c[2] * v[0] + c[0] * v[2];
+    y[5] = r[4] * v[3] + r[5] * v[4] + r[2] * v[5] - c[0] * v[1] + c[1] * v[0];
+}
+
 }
 
 /// The arrays of one solve, all [6 n].
@@ -37,7 +50,8 @@ struct ConjugateGradients::Sweep {
     int n;
     const SweepPair* pairs;
     const int *first, *column;
-    const double *diagonal, *inverse;
+    const DiagonalBlock* diagonal;
+    const double* inverse;
     const double* f;  // null: no rank-one term
     double weight;
 
@@ -79,7 +93,7 @@ struct ConjugateGradients::Sweep {
             for (int k = 0; k < 6 * n; ++k) fx += f[k] * x[k];
         for (int i = 0; i < n; ++i) {
             double y[6];
-            block_times(diagonal + block * i, x + 6 * i, y);
+            diagonal_times(diagonal[i], x + 6 * i, y);
             for (int c = 0; c < 6; ++c) r[6 * i + c] = b[6 * i + c] - y[c];
             if (f)
                 for (int c = 0; c < 6; ++c) r[6 * i + c] += weight * fx * f[6 * i + c];
@@ -129,7 +143,7 @@ struct ConjugateGradients::Sweep {
     {
         for (int i = 0; i < n; ++i) {
             double y[6];
-            block_times(diagonal + block * i, t + 6 * i, y);
+            diagonal_times(diagonal[i], t + 6 * i, y);
             for (int k = 0; k < 6; ++k) c[6 * i + k] = p[6 * i + k] + y[k] - 2 * u[6 * i + k];
             if (f)
                 for (int k = 0; k < 6; ++k) c[6 * i + k] -= weight * ft * f[6 * i + k];
@@ -170,7 +184,7 @@ void ConjugateGradients::load(const ResistanceMatrix& m)
     first_.assign(n_ + 1, 0);
     column_.resize(m.pairs.size());
     pairs_.resize(m.pairs.size());
-    diagonal_.resize(static_cast<std::size_t>(n_) * block);
+    diagonal_ = m.diagonal.data();
     for (std::size_t k = 0; k < m.pairs.size(); ++k) {
         const PairBlock& p = m.pairs[k];
         ++first_[p.i + 1];
@@ -178,19 +192,18 @@ void ConjugateGradients::load(const ResistanceMatrix& m)
         pairs_[k] = {
             {p.normal.x(), p.normal.y(), p.normal.z()}, p.ya - p.xa, p.ya, p.yb11, p.yb21, p.yc12};
     }
-    for (int i = 0; i < n_; ++i) {
-        first_[i + 1] += first_[i];
-        std::memcpy(diagonal_.data() + block * i, m.diagonal[i].data(), block * sizeof(double));
-    }
+    for (int i = 0; i < n_; ++i) first_[i + 1] += first_[i];
 }
 
 void ConjugateGradients::refresh_factor(const ResistanceMatrix& m)
 {
-    std::vector<Mat6> D(m.diagonal);
-    inverse_.resize(diagonal_.size());
+    std::vector<Mat6> D;
+    D.reserve(n_);
+    for (const DiagonalBlock& b : m.diagonal) D.push_back(full(b));
+    inverse_.resize(static_cast<std::size_t>(n_) * block);
     for (int i = 0; i < n_; ++i) {
         Eigen::LLT<Mat6> factor(D[i]);
-        if (factor.info() != Eigen::Success) factor.compute(m.diagonal[i]);
+        if (factor.info() != Eigen::Success) factor.compute(full(m.diagonal[i]));
         const Mat6 inverse = factor.solve(Mat6::Identity());
         const Mat6 symmetric = 0.5 * (inverse + inverse.transpose());
         std::memcpy(inverse_.data() + block * i, symmetric.data(), block * sizeof(double));
@@ -205,7 +218,8 @@ bool ConjugateGradients::solve(const ResistanceProblem& problem, const Velocitie
                                double tolerance, SolveReport& report)
 {
     load(problem.matrix);
-    if (age_ < 0 || age_ >= factor_lifetime || inverse_.size() != diagonal_.size()) {
+    if (age_ < 0 || age_ >= factor_lifetime ||
+        inverse_.size() != static_cast<std::size_t>(n_) * block) {
         refresh_factor(problem.matrix);
         age_ = 0;
     }
@@ -218,7 +232,7 @@ bool ConjugateGradients::solve(const ResistanceProblem& problem, const Velocitie
                       pairs_.data(),
                       first_.data(),
                       column_.data(),
-                      diagonal_.data(),
+                      diagonal_,
                       inverse_.data(),
                       problem.direction ? problem.direction->data()->data() : nullptr,
                       problem.weight};

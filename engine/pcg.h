@@ -42,8 +42,8 @@ private:
     int age_ = -1;                     // solves since the factor was made; -1: there is none
     std::vector<SweepPair> pairs_;     // grouped by i
     std::vector<int> first_, column_;  // CSR over i of the particles j > i
-    std::vector<double> diagonal_;     // A_i [n * 36], symmetric
-    std::vector<double> inverse_;      // D_i^-1 [n * 36], symmetric
+    const DiagonalBlock* diagonal_ = nullptr;  // A_i [n], of the matrix being solved
+    std::vector<double> inverse_;              // D_i^-1 [n * 36], symmetric
     std::vector<double> work_;
 };
 

@@ -15,10 +15,23 @@ Mat6 off_diagonal(const PairBlock& p)
     return block;
 }
 
+Mat6 full(const DiagonalBlock& b)
+{
+    const auto symmetric = [](const std::array<double, 6>& v) {
+        Mat3 m;
+        m << v[0], v[3], v[4], v[3], v[1], v[5], v[4], v[5], v[2];
+        return m;
+    };
+    const Mat3 coupling = cross_matrix(Vec3(b.coupling.data()));
+    Mat6 m;
+    m << symmetric(b.translation), coupling, -coupling, symmetric(b.rotation);
+    return m;
+}
+
 void multiply(const ResistanceMatrix& m, const Velocities& v, Velocities& result)
 {
     result.resize(v.size());
-    for (int i = 0; i < m.size(); ++i) result[i].noalias() = m.diagonal[i] * v[i];
+    for (int i = 0; i < m.size(); ++i) result[i].noalias() = full(m.diagonal[i]) * v[i];
     for (const PairBlock& p : m.pairs) {
         result[p.i] += times(p, v[p.j]);
         result[p.j] += transposed_times(p, v[p.i]);

@@ -6,6 +6,7 @@
 #pragma once
 #include "engine/types.h"
 
+#include <array>
 #include <vector>
 
 namespace sigmaflow {
@@ -18,9 +19,39 @@ struct PairBlock {
     double xa, ya, yb11, yb21, yc12;
 };
 
+/// Diagonal block of a particle: symmetric parts of translation and rotation, and their coupling,
+/// which is the cross product with one vector, because it is a sum of such products.
+///   force = translation U + coupling x Omega,  torque = -coupling x U + rotation Omega
+struct DiagonalBlock {
+    // xx, yy, zz, xy, xz, yz
+    std::array<double, 6> translation{}, rotation{};
+    std::array<double, 3> coupling{};
+};
+
+/// Adds normal nn + shear P (translation), turn P (rotation), twist n (coupling), P = 1 - nn.
+inline void add_pair(DiagonalBlock& b, const Vec3& n, double normal, double shear, double twist,
+                     double turn)
+{
+    const double x = n.x(), y = n.y(), z = n.z(), difference = normal - shear;
+    const double products[6] = {x * x, y * y, z * z, x * y, x * z, y * z};
+    for (int k = 0; k < 6; ++k) {
+        b.translation[k] += difference * products[k];
+        b.rotation[k] -= turn * products[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        b.translation[k] += shear;
+        b.rotation[k] += turn;
+    }
+    b.coupling[0] += twist * x;
+    b.coupling[1] += twist * y;
+    b.coupling[2] += twist * z;
+}
+
+Mat6 full(const DiagonalBlock& block);
+
 struct ResistanceMatrix {
-    std::vector<Mat6> diagonal;    // [n]
-    std::vector<PairBlock> pairs;  // sorted by (i, j)
+    std::vector<DiagonalBlock> diagonal;  // [n]
+    std::vector<PairBlock> pairs;         // sorted by (i, j)
 
     int size() const { return static_cast<int>(diagonal.size()); }
 };

@@ -84,6 +84,8 @@ struct Length {
     std::size_t maximum = std::numeric_limits<std::size_t>::max();
 
     static constexpr Length exactly(std::size_t n) { return {n, n}; }
+    /// "3", "1 to 5", "at least 2"
+    std::string text() const;
 };
 
 struct JsonValue;

@@ -2,7 +2,9 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -27,6 +29,25 @@ struct JsonMember {
     JsonValue value;
 };
 
+// Null if the value is of another kind.
+inline const JsonValue::Object* object_of(const JsonValue& value)
+{
+    const auto* data = std::get_if<std::unique_ptr<JsonValue::Object>>(&value.data);
+    return data ? data->get() : nullptr;
+}
+
+inline const JsonValue::Array* array_of(const JsonValue& value)
+{
+    const auto* data = std::get_if<std::unique_ptr<JsonValue::Array>>(&value.data);
+    return data ? data->get() : nullptr;
+}
+
+inline const std::string* text_of(const JsonValue& value)
+{
+    const auto* data = std::get_if<std::unique_ptr<std::string>>(&value.data);
+    return data ? data->get() : nullptr;
+}
+
 struct JsonTree {
     std::string name, text;
     JsonValue root;
@@ -44,6 +65,9 @@ std::string json_location(const JsonTree& tree, std::size_t offset);
 
 /// End of the token that begins at `offset`.
 std::size_t json_token_end(const std::string& text, std::size_t offset);
+
+/// "heun, euler"
+std::string one_of(std::span<const std::string_view> words);
 
 /// A step further in a JSON pointer, with ~ and / escaped.
 std::string json_pointer(const std::string& parent, std::string_view key);

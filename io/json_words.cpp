@@ -1,5 +1,6 @@
 // Nearest words and quoting for the messages of json_document.h.
 #include "io/json_document.h"
+#include "io/json_parse.h"
 
 #include <algorithm>
 #include <array>
@@ -36,6 +37,13 @@ std::string plain(std::string_view word)
     return result;
 }
 
+}
+
+std::string one_of(std::span<const std::string_view> words)
+{
+    std::string result;
+    for (std::string_view word : words) result += (result.empty() ? "" : ", ") + std::string(word);
+    return result;
 }
 
 std::optional<std::string> nearest_word(std::string_view word,

@@ -123,8 +123,8 @@ public:
           contacts_(file.create_group("contacts"))
     {
         const Hdf5Group box = trajectory.create_group("box"), state = file.open_group("state");
-        write_number<std::int32_t>(box.id(), "dimension", 3);
-        write_words(box.id(), "boundary", {"periodic", "periodic", "periodic"});
+        write_number<std::int32_t>(box, "dimension", 3);
+        write_words(box, "boundary", {"periodic", "periodic", "periodic"});
         scalars_.push_back(clock_.element<double>(box, "edges", {3, 3}, "a"));
         scalars_.push_back(clock_.element<double>(box, "offset", {}, "a"));
         scalars_.push_back(clock_.element<double>(state, "strain", {}, "1"));
@@ -174,15 +174,15 @@ private:
 
 void write_h5md(const Hdf5Group& file, const Provenance& provenance)
 {
-    write_number<std::int32_t>(file.id(), "sigmaflow_schema", run_schema_version);
+    write_number<std::int32_t>(file, "sigmaflow_schema", run_schema_version);
     const Hdf5Group h5md = file.create_group("h5md");
-    write_numbers<std::int32_t>(h5md.id(), "version", {1, 1});
+    write_numbers<std::int32_t>(h5md, "version", {1, 1});
     const auto author = provenance.find("author");
-    write_text(h5md.create_group("author").id(), "name",
+    write_text(h5md.create_group("author"), "name",
                author == provenance.end() ? "unknown" : author->second);
     const Hdf5Group creator = h5md.create_group("creator");
-    write_text(creator.id(), "name", "sigmaflow");
-    write_text(creator.id(), "version", SIGMAFLOW_VERSION);
+    write_text(creator, "name", "sigmaflow");
+    write_text(creator, "version", SIGMAFLOW_VERSION);
 }
 
 }
@@ -221,7 +221,7 @@ RunWriter::RunWriter(const std::filesystem::path& path, const State& first, cons
     write_h5md(file, provenance);
     write_parameters(file, {model, control});
     const Hdf5Group texts = file.create_group("provenance");
-    for (const auto& [name, text] : provenance) write_text(texts.id(), name, text);
+    for (const auto& [name, text] : provenance) write_text(texts, name, text);
 
     const Hdf5Group trajectory = file.create_group("particles").create_group("trajectory");
     const std::vector<int> kind = species(first);

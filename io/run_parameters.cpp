@@ -41,12 +41,12 @@ void write_parameters(const Hdf5Group& file, const RunParameters& parameters)
         const nlohmann::ordered_json value = field.write();
         if (value.is_null()) continue;  // the control that was not imposed
         if (value.is_boolean())
-            write_number(group.id(), field.name, static_cast<std::uint8_t>(value.get<bool>()));
+            write_number(group, field.name, static_cast<std::uint8_t>(value.get<bool>()));
         else if (value.is_number())
-            write_number(group.id(), field.name, value.get<double>());
+            write_number(group, field.name, value.get<double>());
         else
-            write_text(group.id(), field.name, value.get<std::string>());
-        if (!field.unit.empty()) write_text(units.id(), field.name, field.unit);
+            write_text(group, field.name, value.get<std::string>());
+        if (!field.unit.empty()) write_text(units, field.name, field.unit);
     }
 }
 

@@ -5,7 +5,7 @@
 // /parameters/unit.
 #pragma once
 #include "engine/model.h"
-#include "io/hdf5_data.h"
+#include "io/hdf5_group.h"
 
 namespace sigmaflow::io {
 

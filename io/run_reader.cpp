@@ -1,3 +1,4 @@
+#include "io/json_document.h"
 #include "io/run_file.h"
 #include "io/run_parameters.h"
 #include "io/run_schema.h"
@@ -130,7 +131,7 @@ std::vector<Frame> read_frames(const Hdf5Group& file)
     for (const double value : radius)
         if (!(value > 0))
             throw Error(ErrorKind::input, trajectory.where("radius"),
-                        "must be > 0 [a], got " + std::to_string(value));
+                        "must be > 0 [a], got " + number_text(value));
     const auto samples =
         read_samples(file.open_group("observables").open_group("trajectory"), count);
     const int size = static_cast<int>(particles);

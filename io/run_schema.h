@@ -6,7 +6,7 @@
 // a new run_schema_version.
 #pragma once
 #include "engine/frame.h"
-#include "io/hdf5_data.h"
+#include "io/hdf5_dataset.h"
 
 #include <cstdint>
 #include <type_traits>

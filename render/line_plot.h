@@ -1,7 +1,8 @@
 // render/line_plot.h -- plots for a paper: lines, markers, error bars, bands, reference lines.
 //
 // Texts are rich: $italic$ letters, _{subscript}, ^{superscript}, any Unicode (DejaVu fonts).
-// Errors: rendering (PNG only; SVG needs no graphics), input (series of unequal length, bad range).
+// No graphics driver is needed. Errors: rendering (a font is missing), input (series of unequal
+// length, bad range).
 #pragma once
 #include "render/image.h"
 

@@ -129,7 +129,9 @@ std::string array_label(const std::string& array)
 ParticleLayout particle_layout(int width, int height, bool title, bool colour_bar, bool triad)
 {
     ParticleLayout layout;
-    const double unit = std::max(0.28, std::min(width / 1500.0, height / 1080.0));
+    // Texts stay readable in small pictures, as long as there is room for particles beside them.
+    const double readable = std::max(0.28, std::min(width / 1500.0, height / 1080.0));
+    const double unit = std::min({readable, width / 560.0, height / 620.0});
     const double margin = 28 * unit, triad_width = 336 * unit, triad_height = 270 * unit;
     const double right = width - (colour_bar ? 350 * unit : margin), bottom = height - margin;
     const double top = title ? 104 * unit : margin;

@@ -1,7 +1,11 @@
 // render/particles.h -- spheres at their true radii, coloured by one of their arrays.
 //
 // Takes the same vtkPolyData that is saved for ParaView (point arrays `radius` and the colour
-// array), so picture and file cannot disagree. Errors: rendering, input (no such array).
+// array), so picture and file cannot disagree. Vectors are coloured by their length; integer arrays
+// get a bar of whole numbers. Colours run from 0 (from a round 1 % quantile where values are
+// negative) to a round 99 % quantile; values beyond are marked on the bar.
+// Errors: rendering (no driver, no font), input (no such array, unknown colour map, empty colour
+// range, positions not finite, radius <= 0).
 #pragma once
 #include "render/image.h"
 
@@ -19,7 +23,7 @@ struct ParticleView {
     std::string colour_by = "nonaffine_speed";
     std::string colour_label;            // rich text; empty: made from colour_by
     std::string colour_map = "inferno";  // inferno, viridis, paper (dark grey to yellow)
-    std::optional<double> colour_minimum, colour_maximum;  // default 0 and a round 99 % quantile
+    std::optional<double> colour_minimum, colour_maximum;  // default: see above
     std::string title;                                     // rich text: $italic$, _{sub}, ^{super}
     bool ambient_occlusion = true;
     bool antialiasing = true;

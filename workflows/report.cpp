@@ -32,16 +32,20 @@ std::string format(const char* pattern, double value)
 
 }
 
-std::string with_error(double value, double error)
+std::string with_error(double value, double error, const std::string& between)
 {
     if (!std::isfinite(value)) return "undefined";
-    if (!(error > 0) || !std::isfinite(error)) return format("%.4g", value);
+    // an imposed quantity scatters by rounding only
+    if (!(error > 1e-12 * std::abs(value)) || !std::isfinite(error)) return format("%.4g", value);
     const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
     if (decimals < 0 || decimals > 6 || std::abs(value) >= 1e6)
-        return format("%.3g", value) + " +- " + format("%.1e", error);
-    char text[96];
-    std::snprintf(text, sizeof text, "%.*f +- %.*f", decimals, value, decimals, error);
-    return text;
+        return format("%.3g", value) + between + format("%.1e", error);
+    const auto rounded = [&](double number) {
+        char text[64];
+        std::snprintf(text, sizeof text, "%.*f", decimals, number);
+        return std::string(text);
+    };
+    return rounded(value) + between + rounded(error);
 }
 
 std::string one_line(const Json& step)

@@ -12,6 +12,6 @@ std::string one_line(const nlohmann::ordered_json& step_summary);
 std::string table(const nlohmann::ordered_json& summary);
 
 /// "0.0192 +- 0.0011": the error with two significant digits, the value with as many decimals.
-std::string with_error(double value, double error);
+std::string with_error(double value, double error, const std::string& between = " +- ");
 
 }

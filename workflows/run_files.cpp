@@ -24,9 +24,12 @@ RunFiles::RunFiles(Context& context, const Control& control)
       run_{.name = context.step_name,
            .control = control,
            .volume_fraction = volume_fraction(context.state),
+           .particles = context.state.size(),
            .file = context.folder.file(folder_ + "run.h5"),
            .series = {},
-           .start_up = {}},
+           .start_up = {},
+           .jammed = false,
+           .continues = context.last_run},
       csv_(context.folder.file(folder_ + "series.csv")),
       hdf5_(run_.file, context.state, context.suspension.model, control, context.provenance)
 {
@@ -62,6 +65,7 @@ Run& RunFiles::finish()
     hdf5_.finish();
     io::write_case(context_.folder.file(folder_ + "state.json"), context_.state,
                    context_.suspension.model, run_.control);
+    context_.last_run = run_.name;
     return context_.runs.emplace_back(std::move(run_));
 }
 

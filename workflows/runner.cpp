@@ -71,6 +71,7 @@ void run_workflow(const RunOptions& options, std::ostream& results)
                     .progress = progress,
                     .state = {},
                     .runs = {},
+                    .last_run = {},
                     .step_name = {},
                     .results = {},
                     .problems = {}};

@@ -118,24 +118,54 @@ public:
         arrived_ = reached(state.strain, task_.strain);
         last_ = arrived_ || state.time >= task_.time;
         const bool on_grid = samples_.due(state.strain), frame = frames_.due(state.strain);
+        has_sample_ = has_frame_ = false;
         if (!on_grid && !frame && !last_) return evaluate(state, model, task_.control, workspace);
 
         DetailedEvaluation detailed = evaluate_in_detail(state, model, task_.control, workspace);
-        if (on_grid || last_) output_.sample(make_sample(state, detailed), on_grid);
+        if (on_grid || last_) write_sample(state, detailed, on_grid);
         if (on_grid && output_.enough && output_.enough()) last_ = true;
-        if (frame || last_) output_.frame(make_frame(state, detailed));
+        if (frame || last_) write_frame(state, detailed);
         return std::move(detailed.evaluation);
+    }
+
+    /// Makes sure that the last state is recorded.
+    void record_end(const State& state, const Model& model, Workspace& workspace)
+    {
+        if (has_sample_ && has_frame_) return;
+        const DetailedEvaluation detailed =
+            evaluate_in_detail(state, model, task_.control, workspace);
+        if (!has_sample_) write_sample(state, detailed, false);
+        if (!has_frame_) write_frame(state, detailed);
     }
 
     bool last() const { return last_; }
     bool arrived() const { return arrived_; }
 
 private:
+    void write_sample(const State& state, const DetailedEvaluation& detailed, bool on_grid)
+    {
+        output_.sample(make_sample(state, detailed), on_grid);
+        has_sample_ = true;
+    }
+    void write_frame(const State& state, const DetailedEvaluation& detailed)
+    {
+        output_.frame(make_frame(state, detailed));
+        has_frame_ = true;
+    }
+
     const ShearingTask& task_;
     const ShearingOutput& output_;
     OutputClock samples_, frames_;
-    bool last_ = false, arrived_ = false;
+    bool last_ = false, arrived_ = false;  // of the state that was recorded last
+    bool has_sample_ = false, has_frame_ = false;
 };
+
+std::optional<JammingMonitor> monitor_of(const Control& control)
+{
+    const auto* stress = std::get_if<ImposedStress>(&control);
+    if (!stress) return std::nullopt;
+    return JammingMonitor(stress->value, {.viscosity = jammed_viscosity});
+}
 
 }
 
@@ -145,11 +175,17 @@ ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
     state.strain = state.time = 0;
     Workspace workspace;
     Recorder recorder(task, output);
+    std::optional<JammingMonitor> monitor = monitor_of(task.control);
     ShearingResult result;
     try {
         for (;; ++result.steps) {
             const Evaluation evaluation = recorder.record(state, model, workspace);
             if (recorder.last()) break;
+            if (monitor && monitor->observe(state, evaluation)) {
+                recorder.record_end(state, model, workspace);
+                result.outcome = Outcome::jammed;
+                break;
+            }
             progress.update(std::max(state.strain / task.strain, state.time / task.time),
                             details_text(state, evaluation.shear_rate));
             const StepLimit limit{recorder.target(), task.time};
@@ -161,7 +197,23 @@ ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
                            std::to_string(result.steps));
     }
     if (recorder.arrived()) result.outcome = Outcome::flowing;
+    if (monitor && monitor->last_window().duration > 0) result.window = monitor->last_window();
     return result;
+}
+
+nlohmann::ordered_json shearing_json(const State& state, const ShearingResult& result)
+{
+    nlohmann::ordered_json json;
+    json["outcome"] = outcome_name(result.outcome);
+    json["strain"] = state.strain;
+    json["time"] = state.time;
+    json["steps"] = result.steps;
+    if (const auto& window = result.window)
+        json["jamming_window"] = {{"duration", window->duration},
+                                  {"strain_gain", window->strain_gain},
+                                  {"mean_viscosity", window->mean_viscosity},
+                                  {"force_residual", window->force_residual}};
+    return json;
 }
 
 }

@@ -5,6 +5,7 @@
 // the end. The strain and the time of the state count from the beginning of the step.
 #pragma once
 #include "engine/evaluation.h"
+#include "engine/jamming.h"
 #include "engine/step.h"
 #include "workflows/step.h"
 
@@ -38,7 +39,8 @@ struct ShearingTask {
     double frame_interval = 0;   // [-]; 0: only the last frame
 };
 
-/// How a shearing step ended. A jammed suspension is a result, not an error.
+/// flowing: reached its strain; jammed: engine/jamming.h; undecided: ran out of time. A jammed
+/// suspension is a result, not an error.
 enum class Outcome { flowing, jammed, undecided };
 std::string_view outcome_name(Outcome outcome);
 
@@ -53,10 +55,14 @@ struct ShearingOutput {
 struct ShearingResult {
     Outcome outcome = Outcome::undecided;
     long steps = 0;
+    std::optional<JammingWindow> window;  // the last complete one, under an imposed stress
 };
 
 /// Shears `state` in place. Errors: numerics, with strain and step number as context.
 ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
                      const ShearingOutput& output, Progress& progress);
+
+/// {"outcome", "strain", "time", "steps", "jamming_window"} of a finished run, for summary.json.
+nlohmann::ordered_json shearing_json(const State& state, const ShearingResult& result);
 
 }

@@ -52,9 +52,12 @@ struct Run {
     std::string name;
     Control control;
     double volume_fraction = 0;
+    int particles = 0;
     std::filesystem::path file;      // run.h5
     std::vector<Sample> series;      // at equal strain intervals
     std::optional<double> start_up;  // averages begin at this strain; none: no averages
+    bool jammed = false;
+    std::string continues;  // the run whose last state it started from; empty: a packing
 };
 
 /// What the steps work on and hand on.
@@ -66,6 +69,7 @@ struct Context {
 
     State state;
     std::vector<Run> runs;
+    std::string last_run;  // that led to the state; empty: a packing did
 
     std::string step_name;              // of the step that is running
     nlohmann::ordered_json results;     // of the step that is running, for summary.json

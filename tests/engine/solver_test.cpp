@@ -39,7 +39,7 @@ Eigen::MatrixXd dense(const ResistanceMatrix& R)
 {
     const int size = 6 * R.size();
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
-    for (int i = 0; i < R.size(); ++i) m.block<6, 6>(6 * i, 6 * i) = R.diagonal[i];
+    for (int i = 0; i < R.size(); ++i) m.block<6, 6>(6 * i, 6 * i) = full(R.diagonal[i]);
     for (const PairBlock& p : R.pairs) {
         m.block<6, 6>(6 * p.i, 6 * p.j) = off_diagonal(p);
         m.block<6, 6>(6 * p.j, 6 * p.i) = off_diagonal(p).transpose();
@@ -105,7 +105,8 @@ TEST_P(EverySolver, AcceptsAGuessAndAChangedMatrix)
     Velocities x;
     solver.solve({p.matrix}, p.b, x);
     for (int change = 0; change < 25; ++change) {
-        for (Mat6& block : p.matrix.diagonal) block *= 1.01;
+        for (DiagonalBlock& block : p.matrix.diagonal)
+            for (double& value : block.translation) value *= 1.01;
         solver.solve({p.matrix}, p.b, x);
     }
     const Eigen::VectorXd expected = dense(p.matrix).llt().solve(dense(p.b));
@@ -115,7 +116,7 @@ TEST_P(EverySolver, AcceptsAGuessAndAChangedMatrix)
 TEST_P(EverySolver, AMatrixThatIsNotPositiveDefiniteIsAnErrorThatNamesAParticle)
 {
     Problem p = dense_problem(60);
-    p.matrix.diagonal[17](2, 2) = -1e6;
+    p.matrix.diagonal[17].translation[2] = -1e6;
     ResistanceSolver solver({GetParam(), 1e-10});
     solver.set_pattern(60, p.candidates);
     Velocities x;

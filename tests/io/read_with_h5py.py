@@ -23,6 +23,11 @@ def check(condition, what):
         sys.exit("wrong: " + what)
 
 
+def text(attribute):
+    """Texts have a fixed length: h5py gives bytes."""
+    return attribute.decode("utf-8") if isinstance(attribute, bytes) else attribute
+
+
 def check_equal(found, expected, what):
     found, expected = np.asarray(found), np.asarray(expected)
     check(found.shape == expected.shape and np.array_equal(found, expected),
@@ -34,12 +39,12 @@ def check_element(element, name, samples, unit):
     check_equal(element["step"], np.arange(samples), name + "/step")
     check_equal(element["time"], np.arange(samples) / 3.0, name + "/time")
     check(element["value"].shape[0] == samples, name + " has another length")
-    check(element["value"].attrs["unit"] == unit, f"{name} has the unit {element['value'].attrs['unit']}")
+    check(text(element["value"].attrs["unit"]) == unit, f"{name} has the unit {element['value'].attrs['unit']}")
 
 
 # H5MD 1.1
 check_equal(run["h5md"].attrs["version"], [1, 1], "H5MD version")
-check(run["h5md/creator"].attrs["name"] == "sigmaflow", "creator")
+check(text(run["h5md/creator"].attrs["name"]) == "sigmaflow", "creator")
 check("name" in run["h5md/author"].attrs and "version" in run["h5md/creator"].attrs, "h5md texts")
 box = run["particles/trajectory/box"]
 check(box.attrs["dimension"] == 3, "dimension")
@@ -87,12 +92,12 @@ for step in range(FRAMES):
     part = slice(springs["first"][step], springs["first"][step] + springs["count"][step])
     check_equal(springs["spring"][part], np.array([[n, step, 0.1] for n in k]).reshape(step, 3), "spring" + at)
     check_equal(springs["sliding"][part], k % 2, "sliding" + at)
-check(rows["normal_force"].attrs["unit"] == "F*", "unit of normal_force")
+check(text(rows["normal_force"].attrs["unit"]) == "F*", "unit of normal_force")
 
 # the time series: the same numbers as in the text file
-with open(os.path.join(folder, "series.csv")) as text:
-    described = dict(entry.rstrip("]").split(" [") for entry in text.readline()[2:].strip().split(","))
-    table = list(csv.DictReader(text))
+with open(os.path.join(folder, "series.csv")) as lines:
+    described = dict(entry.rstrip("]").split(" [") for entry in lines.readline()[2:].strip().split(","))
+    table = list(csv.DictReader(lines))
 check(len(table) == SAMPLES, "rows of series.csv")
 check(set(table[0]) == set(run["observables"]) - {"trajectory"}, "names of the series")
 for name in table[0]:
@@ -104,10 +109,10 @@ for name in table[0]:
 # parameters, texts, storage
 parameters, unit = run["parameters"].attrs, run["parameters/unit"].attrs
 check(parameters["stress"] == 2 and "rate" not in parameters, "control")
-check(parameters["contact_hydrodynamics"] == "lubrication", "contact_hydrodynamics")
-check(parameters["debye_length"] == 0.02 and unit["debye_length"] == "a", "debye_length")
+check(text(parameters["contact_hydrodynamics"]) == "lubrication", "contact_hydrodynamics")
+check(parameters["debye_length"] == 0.02 and text(unit["debye_length"]) == "a", "debye_length")
 check(parameters["einstein"] == 1, "einstein")
-check(dict(run["provenance"].attrs) == {"version": "example", "seed": "42"}, "provenance")
+check({name: text(value) for name, value in run["provenance"].attrs.items()} == {"version": "example", "seed": "42"}, "provenance")
 
 
 def check_storage(name, entry):

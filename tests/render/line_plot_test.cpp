@@ -137,8 +137,10 @@ TEST(LinePlot, AutomaticRangesHoldAllDataAndTheirErrors)
 TEST(LinePlot, LegendStandsWhereThereAreNoData)
 {
     // Lines everywhere but in the lower left corner.
-    Plot plot = plot_of({line({0, 10}, {10, 9}), line({0, 10}, {9, 9.5}), line({5, 10}, {1, 1.5}),
-                         line({5, 10}, {0, 3})});
+    std::vector<Series> lines;
+    for (int y = 0; y <= 20; ++y)
+        lines.push_back(line({y > 10 ? 0.0 : 5.0, 10}, {0.5 * y, 0.5 * y}));
+    Plot plot = plot_of(lines);
     plot.y.minimum = 0;
     plot.y.maximum = 10;
     plot.series[0].label = "the legend";

@@ -88,6 +88,16 @@ TEST(Overlay, TriadAndBarKeepOffTheParticles)
     }
 }
 
+TEST(Overlay, TheSmallestPicturesStillHaveRoomForParticles)
+{
+    for (const auto& [width, height] : {std::pair(64, 64), {100, 100}, {64, 16384}, {16384, 64}}) {
+        const ParticleLayout layout = particle_layout(width, height, true, true, true);
+        EXPECT_GT(layout.particles.width(), 15) << width << " x " << height;
+        EXPECT_GT(layout.particles.height(), 15) << width << " x " << height;
+        EXPECT_GT(layout.colour_bar.height(), 15) << width << " x " << height;
+    }
+}
+
 TEST(Overlay, TriadLabelsKeepOffTheArrowsAndOffEachOther)
 {
     const Fonts fonts;

@@ -5,6 +5,7 @@
 #include "engine/error.h"
 #include "render/colour_map.h"
 #include "render/framing.h"
+#include "render/particle_overlay.h"
 #include "tests/render/scenes.h"
 #include "tests/support/image_compare.h"
 
@@ -94,9 +95,9 @@ std::pair<int, int> pixel_of(const std::vector<Ball>& balls, const ParticleView&
 {
     std::vector<render::Sphere> spheres;
     for (const Ball& ball : balls) spheres.push_back({ball.centre, ball.radius});
-    const double margin = 28 * std::max(0.28, std::min(view.width / 1500.0, view.height / 1080.0));
-    const int width = static_cast<int>(view.width - 2 * margin);
-    const int height = static_cast<int>(view.height - 2 * margin);
+    const render::Rectangle room =
+        render::particle_layout(view.width, view.height, false, false, false).particles;
+    const int width = static_cast<int>(room.width()), height = static_cast<int>(room.height());
     const render::Camera camera = render::frame_spheres(spheres, width, height);
     const render::Point p = camera.project(point);
     return {static_cast<int>((view.width - camera.width) / 2.0 + p.x),
@@ -231,26 +232,24 @@ TEST(Particles, SmoothedOutlinesHaveManyGreys)
 
 TEST(Particles, AmbientOcclusionDarkensGapsButNotFreeSpheres)
 {
-    const auto mean = [](const Image& image) {
-        double sum = 0;
-        long count = 0;
-        for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
-            if (is_white(&image.rgb[i])) continue;
-            sum += image.rgb[i] + image.rgb[i + 1] + image.rgb[i + 2];
-            ++count;
-        }
-        return sum / count;
-    };
-    const auto darkening = [&](const std::vector<Ball>& balls) {
-        ParticleView view = test::bare_view(200, 200);
-        const double without = mean(render::render_particles(test::polydata(balls), view));
+    // How much darker the pixel in the middle of the first ball becomes.
+    const auto darkening = [](const std::vector<Ball>& balls) {
+        ParticleView view = test::bare_view(300, 300);
+        const auto [x, y] = pixel_of(balls, view, balls[0].centre);
+        const auto brightness = [&, x = x, y = y] {
+            const Image image = render::render_particles(test::polydata(balls), view);
+            return double(image.pixel(x, y)[0]);
+        };
+        const double without = brightness();
         view.ambient_occlusion = true;
-        return mean(render::render_particles(test::polydata(balls), view)) / without;
+        return brightness() / without;
     };
-    const double free = darkening({{{0, 0, 0}, 1.0, 1.0}});
-    const double dense = darkening(test::shaken_lattice({4, 4, 4}));
-    EXPECT_GT(free, 0.9);
-    EXPECT_LT(dense, free - 0.05);
+    const Ball middle{{0, 0, 0}, 1.0, 1.0};
+    EXPECT_GT(darkening({middle}), 0.95);
+    std::vector<Ball> in_a_hole{middle};
+    for (const auto& [right, up] : {std::pair(1.3, 0.0), {-1.3, 0.0}, {0.0, 1.3}, {0.0, -1.3}})
+        in_a_hole.push_back({in_view(right, up, -1.5), 1.0, 0.0});
+    EXPECT_LT(darkening(in_a_hole), 0.9);
 }
 
 TEST(Particles, LookLikeTheBaseline)

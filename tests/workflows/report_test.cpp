@@ -21,6 +21,7 @@ TEST(Report, ShowsAValueWithoutErrorAlone)
 {
     EXPECT_EQ(with_error(2, 0), "2");
     EXPECT_EQ(with_error(2, std::nan("")), "2");
+    EXPECT_EQ(with_error(2, 1e-16), "2");  // rounding
     EXPECT_EQ(with_error(std::nan(""), 1), "undefined");
 }
 

@@ -69,10 +69,13 @@ struct Equilibrate {
                                               : Control(ImposedStress{*shearing.stress});
         RunFiles files(context, control);
         bool stationary = false;
-        const ShearingOutput output{
-            [&](const Sample& sample, bool on_grid) { files.append(sample, on_grid); },
-            [&](const Frame& frame) { files.append(frame, false); },
-            [&] { return stationary = is_stationary(files.series()); }};
+        double last_rate = 0;
+        const ShearingOutput output{[&](const Sample& sample, bool on_grid) {
+                                        files.append(sample, on_grid);
+                                        last_rate = sample.shear_rate;
+                                    },
+                                    [&](const Frame& frame) { files.append(frame, false); },
+                                    [&] { return stationary = is_stationary(files.series()); }};
         const ShearingTask task{control,
                                 shearing.stepping,
                                 maximum_strain,
@@ -81,13 +84,12 @@ struct Equilibrate {
                                 0};
         const ShearingResult result =
             shear(context.state, context.suspension.model, task, output, context.progress);
-        const Run& run = files.finish();
+        Run& run = files.finish();
+        run.jammed = result.outcome == Outcome::jammed;
         context.results["control"] = control_json(control);
-        context.results["outcome"] = stationary ? "stationary" : "not stationary";
-        context.results["strain"] = context.state.strain;
-        context.results["time"] = context.state.time;
-        context.results["steps"] = result.steps;
-        context.results["last_shear_rate"] = run.series.back().shear_rate;
+        context.results.update(shearing_json(context.state, result));
+        if (!run.jammed) context.results["outcome"] = stationary ? "stationary" : "not stationary";
+        context.results["last_shear_rate"] = last_rate;
     }
 };
 

@@ -35,6 +35,7 @@ struct Pack {
                                                   ", smallest gap " + io::number_text(smallest_xi));
         };
         context.state = random_packing(packing, report);
+        context.last_run.clear();
         io::write_case(context.folder.file(context.step_name + "/state.json"), context.state,
                        context.suspension.model, ImposedStress{1});
         context.results["particles"] = context.state.size();

@@ -2,11 +2,14 @@
 #include "engine/statistics.h"
 #include "workflows/averages.h"
 #include "workflows/pictures.h"
+#include "workflows/report.h"
 #include "workflows/steps.h"
 
 namespace sigmaflow::workflows {
 
 namespace {
+
+constexpr render::Colour mean_colour{213, 94, 0};
 
 const SampleField& field_named(std::string_view name)
 {
@@ -17,7 +20,7 @@ const SampleField& field_named(std::string_view name)
 
 struct Plot {
     std::string of, x = "strain", y = "shear_rate";
-    bool logarithmic = false;
+    bool show_start_up = true, logarithmic = false;
     PictureSize size;
 
     void describe(io::Fields& f)
@@ -27,6 +30,8 @@ struct Plot {
         f("of", of, 64, "name of a shearing step; default: the last one before this step");
         f("y", y, names, "scalar of the time series");
         f("x", x, std::vector<std::string_view>{"strain", "time"}, "against strain or time");
+        f("show_start_up", show_start_up,
+          "also the run that this one continues, e.g. equilibrate, at negative strains");
         f("logarithmic", logarithmic, "logarithmic y axis");
         size.describe(f);
     }
@@ -41,14 +46,28 @@ struct Plot {
         const Estimate mean = estimate_mean(column(part, field_named(y).value));
         const double from = part.front().*field_named(x).value, to = x_values.back();
         const double low = mean.mean - mean.standard_error, high = mean.mean + mean.standard_error;
-        if (from > x_values.front()) plot.spans.push_back({x_values.front(), from, "start-up"});
-        plot.bands.push_back({"standard error", {from, to}, {low, low}, {high, high}, {}});
+        if (from > x_values.front())
+            plot.spans.push_back({x_values.front(), from, "start-up, left out"});
+        plot.bands.push_back({"standard error", {from, to}, {low, low}, {high, high}, mean_colour});
         render::Series line;
-        line.label = "mean " + short_number(mean.mean) + " ± " + short_number(mean.standard_error);
+        line.label = "mean " + with_error(mean.mean, mean.standard_error, " ± ");
         line.x = {from, to};
         line.y = {mean.mean, mean.mean};
         line.line = render::Line::dashed;
+        line.colour = mean_colour;
         plot.series.push_back(std::move(line));
+    }
+
+    /// The run before this one, moved so that it ends where this one begins.
+    void add_run_before(const Context& context, const Run& run, render::Series& data) const
+    {
+        if (!show_start_up || run.continues.empty()) return;
+        const Run& before = context.run(run.continues);
+        if (before.series.empty()) return;
+        data.x = column(before.series, field_named(x).value);
+        data.y = column(before.series, field_named(y).value);
+        const double end = data.x.back();
+        for (double& value : data.x) value -= end;
     }
 
     void run(Context& context) const
@@ -57,13 +76,16 @@ struct Plot {
         render::Plot plot;
         plot.width = size.width;
         plot.height = size.height;
-        plot.title = title_text(run.volume_fraction, run.control, context.state.size());
+        plot.title = title_text(run.volume_fraction, run.control, run.particles);
         plot.x.title = axis_text(field_named(x));
         plot.y.title = axis_text(field_named(y));
         plot.y.logarithmic = logarithmic;
         render::Series data;
-        data.x = column(run.series, field_named(x).value);
-        data.y = column(run.series, field_named(y).value);
+        add_run_before(context, run, data);
+        for (const Sample& sample : run.series) {
+            data.x.push_back(sample.*field_named(x).value);
+            data.y.push_back(sample.*field_named(y).value);
+        }
         data.line_width = 2;
         const std::vector<double> x_values = data.x;
         plot.series.push_back(std::move(data));

@@ -49,13 +49,12 @@ struct Shear {
         const ShearingResult result =
             shear(context.state, context.suspension.model, task, output, context.progress);
         Run& run = files.finish();
-        find_start_up(run);
+        run.jammed = result.outcome == Outcome::jammed;
         context.results["control"] = control_json(control);
-        context.results["outcome"] = outcome_name(result.outcome);
         context.results["volume_fraction"] = run.volume_fraction;
-        context.results["strain"] = context.state.strain;
-        context.results["time"] = context.state.time;
-        context.results["steps"] = result.steps;
+        context.results.update(shearing_json(context.state, result));
+        if (run.jammed) return;  // there is no stationary flow to average
+        find_start_up(run);
         context.results.update(averages_json(run));
     }
 };

@@ -34,16 +34,21 @@ std::string csv_text(const Profiles& profiles)
     return text + "\n";
 }
 
-render::Plot profile_plot(const Profiles& profiles)
+std::string number_of_units(double strain)
+{
+    return strain == 1 ? "strain unit" : short_number(strain) + " strain units";
+}
+
+render::Plot profile_plot(const Profiles& profiles, double spacing)
 {
     render::Plot plot;
-    plot.x.title = "$U_{x}$/($γ̇$ $L_{y}$)";
+    plot.x.title = "$U$_{x}/($γ̇$ $L$_{y})";
     plot.y.title = "$y$/$L_{y}$";
     plot.y.minimum = 0;
     plot.y.maximum = 1;
     for (std::size_t i = 0; i < profiles.instantaneous.size(); ++i) {
         render::Series one;
-        one.label = i == 0 ? "one strain unit apart" : "";
+        one.label = i == 0 ? "instantaneous, every " + number_of_units(spacing) : "";
         one.x = profiles.instantaneous[i].u;
         one.y = profiles.instantaneous[i].y;
         one.line_width = 1.2;
@@ -115,16 +120,20 @@ struct VelocityProfileStep {
     void run(Context& context) const
     {
         const Run& run = context.run(of);
+        context.results["of"] = of;
+        if (run.jammed) {
+            context.results["outcome"] = "no profile, the suspension is jammed";
+            return;
+        }
         const Profiles profiles = profiles_of(run);
         io::write_file(context.folder.file(context.step_name + ".csv"), csv_text(profiles));
-        render::Plot plot = profile_plot(profiles);
+        render::Plot plot = profile_plot(profiles, spacing);
         plot.width = size.width;
         plot.height = size.height;
-        plot.title = title_text(run.volume_fraction, run.control, context.state.size());
+        plot.title = title_text(run.volume_fraction, run.control, run.particles);
         write_plot(context, context.step_name, plot);
 
         const Uniformity& uniformity = profiles.mean.uniformity;
-        context.results["of"] = of;
         context.results["profiles"] = profiles.mean.profiles;
         context.results["from_strain"] = profiles.strain.front();
         context.results["largest_deviation"] = uniformity.largest_deviation;

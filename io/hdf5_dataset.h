@@ -1,0 +1,67 @@
+// io/hdf5_dataset.h -- datasets of numbers: growing row by row when written, read as a whole.
+//
+// Errors "<file>:<path in the file>: <problem>": file, no_space while writing, input while reading.
+#pragma once
+#include "io/hdf5_group.h"
+
+#include <string>
+#include <vector>
+
+namespace sigmaflow::io {
+
+/// A dataset to which rows are added: chunked, with Fletcher32 checksums, not compressed.
+class GrowingDataset {
+public:
+    /// An empty unit writes no attribute `unit`.
+    GrowingDataset(const Hdf5Group& group, const std::string& name, hid_t native,
+                   const Shape& row_shape, const std::string& unit);
+
+    /// T is the type of the dataset; the size of `values` a multiple of the size of a row.
+    template <class T>
+    void append(const std::vector<T>& values)
+    {
+        append(native_type<T>(), values.data(), values.size() / row_size_);
+    }
+    hsize_t rows() const { return rows_; }
+
+private:
+    void append(hid_t native, const void* values, hsize_t count);
+
+    Hdf5Handle dataset_;
+    std::string where_;
+    Shape row_shape_;
+    hsize_t row_size_ = 1, rows_ = 0;
+};
+
+template <class T>
+GrowingDataset grow(const Hdf5Group& group, const std::string& name, const Shape& row_shape,
+                    const std::string& unit)
+{
+    return GrowingDataset(group, name, native_type<T>(), row_shape, unit);
+}
+
+template <class T>
+void write_dataset(const Hdf5Group& group, const std::string& name, const std::vector<T>& values,
+                   const std::string& unit)
+{
+    grow<T>(group, name, {}, unit).append(values);
+}
+
+Shape dataset_shape(const Hdf5Group& group, const std::string& name);
+
+/// Number of values in this shape. Error(input) if the dataset has another one, or if the file does
+/// not hold them all: a damaged shape must not ask for more memory than the file has bytes.
+hsize_t checked_size(const Hdf5Group& group, const std::string& name, const Shape& shape);
+
+void read_values(const Hdf5Group& group, const std::string& name, hid_t native, void* values);
+
+/// All values of a dataset, which must have this shape and be stored as T.
+template <class T>
+std::vector<T> read_dataset(const Hdf5Group& group, const std::string& name, const Shape& shape)
+{
+    std::vector<T> values(checked_size(group, name, shape));
+    read_values(group, name, native_type<T>(), values.data());
+    return values;
+}
+
+}

@@ -1,0 +1,132 @@
+// bench_step -- cost of whole steps, as one JSON line per solver.
+//
+//   bench_step --particles 500 --volume-fraction 0.58 --stress 2 --pre-shear 0.8 --steps 300
+//   bench_step --state thick.json --steps 300 --solver cholesky --solver pcg --tolerance 1e-4
+//
+// Every figure is CPU time of the computing thread. All solvers start from the same state.
+#include "engine/packing.h"
+#include "engine/step.h"
+#include "io/case_file.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+using namespace sigmaflow;
+
+namespace {
+
+struct Options {
+    int particles = 500, steps = 200;
+    double volume_fraction = 0.58, stress = 2, pre_shear = 0.3, displacement = 1e-3;
+    double normal_stiffness = 400, debye_length = 0.05, tolerance = 1e-4;
+    std::string state, save;
+    std::vector<std::string> solvers{"pcg"};
+};
+
+double cpu_seconds()
+{
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+Model model_of(const Options& o)
+{
+    Model m;
+    m.stiffness_scale = StiffnessScale::fixed;
+    m.normal_stiffness = o.normal_stiffness;
+    m.tangential_stiffness = o.normal_stiffness / 2;
+    m.debye_length = o.debye_length;
+    return m;
+}
+
+State start_of(const Options& o, const Model& m)
+{
+    if (!o.state.empty()) {
+        const auto document = io::JsonDocument::read(o.state);
+        return io::read_case(document.root()).state;
+    }
+    PackingParameters p;
+    p.particles = o.particles;
+    p.volume_fraction = o.volume_fraction;
+    State s = random_packing(p);
+    const Control control = ImposedStress{o.stress};
+    Workspace workspace({SolverKind::pcg, 1e-4});
+    while (s.strain < o.pre_shear)
+        advance(s, m, control, {}, {o.pre_shear}, evaluate(s, m, control, workspace), workspace);
+    if (!o.save.empty()) io::write_case(o.save, s, m, control);
+    return s;
+}
+
+void measure(const Options& o, const Model& m, State s, const std::string& name)
+{
+    const SolverSettings settings{name == "cholesky" ? SolverKind::cholesky : SolverKind::pcg,
+                                  o.tolerance};
+    const Control control = ImposedStress{o.stress};
+    Workspace workspace(settings);
+    // a few steps first: the pattern is analysed and the buffers grow
+    for (int k = 0; k < 3; ++k)
+        advance(s, m, control, {Scheme::heun, o.displacement}, {},
+                evaluate(s, m, control, workspace), workspace);
+    const double strain = s.strain, time = s.time, start = cpu_seconds();
+    long iterations = 0, fallbacks = 0;
+    double residual = 0;
+    for (int k = 0; k < o.steps; ++k) {
+        const Evaluation e = evaluate(s, m, control, workspace);
+        iterations += e.solve.iterations;
+        fallbacks += e.solve.fell_back;
+        residual = std::max(residual, e.solve.residual);
+        advance(s, m, control, {Scheme::heun, o.displacement}, {}, e, workspace);
+    }
+    const double spent = cpu_seconds() - start;
+    rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    const nlohmann::ordered_json line{
+        {"solver", name},
+        {"tolerance", o.tolerance},
+        {"particles", s.size()},
+        {"steps", o.steps},
+        {"ms_per_step", 1e3 * spent / o.steps},
+        {"ms_per_evaluation", 1e3 * spent / o.steps / 2},
+        {"iterations", static_cast<double>(iterations) / o.steps},
+        {"largest_residual", residual},
+        {"fallbacks", fallbacks},
+        {"strain", s.strain - strain},
+        {"mean_shear_rate", (s.strain - strain) / (s.time - time)},
+        {"seconds_per_strain", spent / (s.strain - strain)},
+        {"peak_memory_MB", static_cast<double>(usage.ru_maxrss) / 1024}};
+    std::cout << line.dump() << std::endl;
+}
+
+}
+
+int main(int argc, char** argv)
+{
+    Options o;
+    CLI::App app("cost of whole steps");
+    app.add_option("--particles", o.particles);
+    app.add_option("--volume-fraction", o.volume_fraction);
+    app.add_option("--stress", o.stress, "sigma0");
+    app.add_option("--normal-stiffness", o.normal_stiffness, "F*/a; tangential: half of it");
+    app.add_option("--debye-length", o.debye_length, "a");
+    app.add_option("--pre-shear", o.pre_shear, "strain before the measurement");
+    app.add_option("--state", o.state, "start from a state instead of a packing (case file)");
+    app.add_option("--save", o.save, "write the pre-sheared state (case file)");
+    app.add_option("--steps", o.steps);
+    app.add_option("--displacement", o.displacement, "a");
+    app.add_option("--solver", o.solvers, "pcg, cholesky");
+    app.add_option("--tolerance", o.tolerance);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const Model m = model_of(o);
+        const State s = start_of(o, m);
+        for (const std::string& solver : o.solvers) measure(o, m, s, solver);
+    } catch (const Error& error) {
+        std::fprintf(stderr, "bench_step: %s\n", error.what());
+        return static_cast<int>(error.kind());
+    }
+}

@@ -1,0 +1,225 @@
+// A small workflow from the JSON file to the pictures, through the program.
+#include "tests/workflows/program.h"
+
+#include "io/run_file.h"
+#include "io/series_csv.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace sigmaflow::workflows {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* small = R"({
+  "name": "small",
+  "suspension": {"particles": 30, "volume_fraction": 0.4, "size_ratio": 1, "seed": 3},
+  "steps": [
+    {"step": "pack"},
+    {"step": "equilibrate", "stress": 2, "minimum_strain": 0.08, "window": 0.04,
+     "maximum_strain": 0.1},
+    {"step": "shear", "stress": 2, "strain": 0.1, "frame_interval": 0.05},
+    {"step": "velocity_profile", "bins": 6, "spacing": 0.05},
+    {"step": "snapshot", "width": 320, "height": 180},
+    {"step": "plot", "name": "rate", "width": 640, "height": 360}
+  ]
+})";
+
+class SmallRun : public Program {
+protected:
+    Json json(const std::string& name) { return Json::parse(text_of(folder / name)); }
+};
+
+}
+
+TEST_F(SmallRun, LeavesEveryPromisedFile)
+{
+    write("small.json", small);
+    const Said said = run("run small.json");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    for (const char* name : {"manifest.json",
+                             "summary.json",
+                             "pack/state.json",
+                             "equilibrate/series.csv",
+                             "equilibrate/run.h5",
+                             "equilibrate/state.json",
+                             "shear/series.csv",
+                             "shear/run.h5",
+                             "shear/state.json",
+                             "shear/particles.pvd",
+                             "shear/contacts.pvd",
+                             "shear/vtk/particles_00000.vtp",
+                             "shear/vtk/particles_00001.vtp",
+                             "shear/vtk/particles_00002.vtp",
+                             "shear/vtk/contacts_00002.vtp",
+                             "velocity_profile.csv",
+                             "velocity_profile.png",
+                             "velocity_profile.svg",
+                             "snapshot.png",
+                             "rate.png",
+                             "rate.svg"}) {
+        const auto path = folder / "out/small" / name;
+        EXPECT_TRUE(std::filesystem::exists(path) && std::filesystem::file_size(path) > 0) << name;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/small/shear/vtk/particles_00003.vtp"));
+    EXPECT_NE(said.out.find("viscosity"), std::string::npos);
+
+    const Json manifest = json("out/small/manifest.json");
+    EXPECT_EQ(manifest["status"], "complete");
+    EXPECT_EQ(manifest["seed"], 3);
+    EXPECT_EQ(manifest["sigmaflow"], SIGMAFLOW_VERSION);
+    EXPECT_EQ(manifest["steps"].size(), 6u);
+    EXPECT_EQ(manifest["workflow"]["suspension"]["model"]["debye_length"], 0.02);
+    for (const char* key : {"host", "cores", "compiler", "started", "ended", "libraries"})
+        EXPECT_FALSE(manifest[key].is_null()) << key;
+    std::size_t listed = 0;
+    for (const Json& file : manifest["files"]) {
+        const auto path = folder / "out/small" / file["name"].get<std::string>();
+        EXPECT_EQ(std::filesystem::file_size(path), file["size"].get<std::uintmax_t>()) << path;
+        ++listed;
+    }
+    std::size_t found = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "out/small"))
+        if (entry.is_regular_file()) ++found;
+    EXPECT_EQ(listed + 1, found);  // all but the manifest itself
+}
+
+TEST_F(SmallRun, SummaryHoldsMeansOfTheSeriesAfterTheStartUp)
+{
+    write("small.json", small);
+    ASSERT_EQ(run("run small.json -q").exit_code, 0);
+    const Json shear = json("out/small/summary.json")["steps"]["shear"];
+    const auto series = io::read_series(folder / "out/small/shear/series.csv");
+    ASSERT_EQ(series.size(), 11u);
+    double rate = 0, first_time = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < series.size(); ++i) {
+        EXPECT_NEAR(series[i].strain, 0.01 * static_cast<double>(i), 1e-15);
+        EXPECT_NEAR(series[i].shear_stress, 2, 1e-9);
+        if (series[i].strain < shear["averages_from_strain"].get<double>() - 1e-9) continue;
+        if (count++ == 0) first_time = series[i].time;
+        rate += series[i].shear_rate;
+    }
+    rate /= count;
+    EXPECT_NEAR(shear["shear_rate"]["mean"].get<double>(), rate, 1e-12 * rate);
+    EXPECT_NEAR(shear["viscosity"]["mean"].get<double>(), 2 / rate, 1e-9 / rate);
+    const double over_time =
+        (0.1 - shear["averages_from_strain"].get<double>()) / (series.back().time - first_time);
+    EXPECT_NEAR(shear["shear_rate_time_average"]["mean"].get<double>(), over_time,
+                1e-9 * over_time);
+    EXPECT_EQ(shear["outcome"], "flowing");
+    EXPECT_EQ(shear["control"]["stress"], 2);
+    for (const char* key : {"viscosity", "shear_rate", "normal_stress_difference_1",
+                            "normal_stress_difference_2", "particle_pressure", "contact_number"}) {
+        EXPECT_TRUE(shear[key]["mean"].is_number()) << key;
+        EXPECT_TRUE(shear[key]["standard_error"].is_number()) << key;
+    }
+    const Json profile = json("out/small/summary.json")["steps"]["velocity_profile"];
+    for (const char* key : {"rms_deviation", "largest_deviation", "slope", "profiles"})
+        EXPECT_TRUE(profile.contains(key)) << key;
+}
+
+TEST_F(SmallRun, SeriesFileAndHdf5FileHoldTheSameNumbers)
+{
+    write("small.json", small);
+    ASSERT_EQ(run("run small.json -q").exit_code, 0);
+    const auto rows = io::read_series(folder / "out/small/shear/series.csv");
+    const auto stored = io::read_run(folder / "out/small/shear/run.h5");
+    ASSERT_EQ(rows.size(), stored.series.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (const SampleField& field : sample_fields())
+            EXPECT_EQ(rows[i].*field.value, stored.series[i].*field.value) << field.name;
+    ASSERT_EQ(stored.frames.size(), 3u);
+    EXPECT_NEAR(stored.frames[1].state.strain, 0.05, 1e-15);
+    EXPECT_NE(stored.provenance.at("workflow").find("\"seed\":3"), std::string::npos);
+}
+
+TEST_F(SmallRun, IsTheSameWithTheSameSeedAndAnotherWithAnotherSeed)
+{
+    write("small.json", small);
+    ASSERT_EQ(run("run small.json -q --out one").exit_code, 0);
+    ASSERT_EQ(run("run small.json -q --out two").exit_code, 0);
+    EXPECT_EQ(text_of(folder / "one/shear/series.csv"), text_of(folder / "two/shear/series.csv"));
+    EXPECT_EQ(text_of(folder / "one/shear/vtk/particles_00002.vtp"),
+              text_of(folder / "two/shear/vtk/particles_00002.vtp"));
+    std::string other = small;
+    other.replace(other.find("\"seed\": 3"), 9, "\"seed\": 4");
+    write("small.json", other);
+    ASSERT_EQ(run("run small.json -q --out three").exit_code, 0);
+    EXPECT_NE(text_of(folder / "one/shear/series.csv"), text_of(folder / "three/shear/series.csv"));
+}
+
+TEST_F(SmallRun, FailureToRenderCostsThePicturesOnlyAndEndsWith69)
+{
+    write("small.json", small);
+    ASSERT_EQ(run("run small.json -q --out good").exit_code, 0);
+    const Said said =
+        run("run small.json --out bad", "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null DISPLAY=");
+    EXPECT_EQ(said.exit_code, 69) << said.err;
+    EXPECT_NE(said.err.find("all other results are complete"), std::string::npos) << said.err;
+    EXPECT_NE(said.out.find("viscosity"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder / "bad/snapshot.png"));
+    for (const char* name : {"shear/series.csv", "shear/particles.pvd", "velocity_profile.csv",
+                             "velocity_profile.svg", "rate.svg", "summary.json"})
+        EXPECT_EQ(text_of(folder / "bad" / name), text_of(folder / "good" / name)) << name;
+    EXPECT_EQ(json("bad/manifest.json")["status"], "pictures missing");
+}
+
+TEST_F(SmallRun, StateFileIsAConfigurationThatEvaluateUnderstands)
+{
+    write("small.json", small);
+    ASSERT_EQ(run("run small.json -q").exit_code, 0);
+    const Said said = run("evaluate out/small/shear/state.json");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const Json expected = Json::parse(said.out)["expected"];
+    const auto series = io::read_series(folder / "out/small/shear/series.csv");
+    EXPECT_NEAR(expected["shear_rate"].get<double>(), series.back().shear_rate,
+                1e-9 * std::abs(series.back().shear_rate));
+    EXPECT_NEAR(expected["shear_stress"].get<double>(), 2, 1e-9);
+}
+
+TEST_F(SmallRun, ARateIsImposedWithFixedStiffness)
+{
+    write("rate.json", R"({"suspension": {"particles": 30, "volume_fraction": 0.4, "size_ratio": 1,
+        "model": {"stiffness_scale": "fixed", "normal_stiffness": 2000, "tangential_stiffness": 1000}},
+        "steps": [{"step": "pack"}, {"step": "shear", "rate": 0.5, "strain": 0.05}]})");
+    ASSERT_EQ(run("run rate.json -q").exit_code, 0);
+    for (const Sample& sample : io::read_series(folder / "out/rate/shear/series.csv")) {
+        EXPECT_EQ(sample.shear_rate, 0.5);
+        EXPECT_NEAR(sample.time, sample.strain / 0.5, 1e-12);
+    }
+}
+
+TEST_F(SmallRun, RunOutOfTimeIsUndecidedAndKeepsItsLastState)
+{
+    write("short.json",
+          R"({"suspension": {"particles": 30, "volume_fraction": 0.4, "size_ratio": 1},
+        "steps": [{"step": "pack"},
+                  {"step": "shear", "stress": 2, "strain": 5, "maximum_time": 0.1}]})");
+    const Said said = run("run short.json -q");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_EQ(json("out/short/summary.json")["steps"]["shear"]["outcome"], "undecided");
+    EXPECT_NEAR(io::read_series(folder / "out/short/shear/series.csv").back().time, 0.1, 1e-12);
+}
+
+TEST_F(SmallRun, JammedSuspensionIsAResult)
+{
+    write("jam.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.61},
+        "steps": [{"step": "pack"}, {"step": "shear", "stress": 20, "strain": 2},
+                  {"step": "velocity_profile"}]})");
+    const Said said = run("run jam.json -q");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const Json shear = json("out/jam/summary.json")["steps"]["shear"];
+    EXPECT_EQ(shear["outcome"], "jammed");
+    EXPECT_LT(shear["strain"].get<double>(), 0.5);
+    EXPECT_LT(shear["jamming_window"]["strain_gain"].get<double>(), 1e-3);
+    EXPECT_LT(shear["jamming_window"]["force_residual"].get<double>(), 0.01);
+    EXPECT_FALSE(shear.contains("viscosity"));
+    // springs and repulsion carry all of the stress
+    const Sample last = io::read_series(folder / "out/jam/shear/series.csv").back();
+    EXPECT_NEAR(last.stress_contact + last.stress_repulsion, 20, 0.02);
+}
+
+}
