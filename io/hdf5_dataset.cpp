@@ -12,6 +12,29 @@ Hdf5Handle open_dataset(const Hdf5Group& group, const std::string& name)
     return opened(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, group.where(name));
 }
 
+/// HDF5 reads zeros for a chunk that it does not find, and the list of chunks has no checksum.
+void require_all_chunks(const Hdf5Handle& dataset, const Shape& shape, const std::string& where)
+{
+    const Hdf5Handle layout(H5Dget_create_plist(dataset.id()), H5Pclose);
+    Shape chunk(shape.size());
+    if (H5Pget_chunk(layout.id(), static_cast<int>(chunk.size()), chunk.data()) < 0)
+        throw failed_read(where);
+    if (chunk.front() == 0 || with_rows(shape.front(), {chunk.begin() + 1, chunk.end()}) != shape)
+        throw Error(ErrorKind::input, where, "has chunks of the shape " + shape_text(chunk));
+    for (hsize_t row = 0; row < shape.front(); row += chunk.front()) {
+        const Shape start = with_rows(row, Shape(shape.size() - 1, 0));
+        unsigned skipped_filters = 0;
+        haddr_t address = HADDR_UNDEF;
+        hsize_t bytes = 0;
+        if (H5Dget_chunk_info_by_coord(dataset.id(), start.data(), &skipped_filters, &address,
+                                       &bytes) < 0)
+            throw failed_read(where);
+        if (address == HADDR_UNDEF || skipped_filters != 0)
+            throw Error(ErrorKind::input, where,
+                        "must have values with a checksum from row " + std::to_string(row) + " on");
+    }
+}
+
 }
 
 GrowingDataset::GrowingDataset(const Hdf5Group& group, const std::string& name, hid_t native,
@@ -71,6 +94,7 @@ hsize_t checked_size(const Hdf5Group& group, const std::string& name, const Shap
         throw Error(ErrorKind::input, group.where(name),
                     "must hold all values of the shape " + shape_text(shape) + ", holds " +
                         std::to_string(bytes) + " bytes");
+    require_all_chunks(dataset, shape, group.where(name));
     return product(shape);
 }
 

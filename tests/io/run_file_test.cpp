@@ -328,6 +328,21 @@ TEST_F(DamagedRun, IsRefusedBeforeMemoryForAnAbsurdShapeIsTaken)
     expect_refused({"/particles/trajectory/position/time", "must hold all values"});
 }
 
+TEST_F(DamagedRun, IsRefusedWhenValuesHaveNoChecksum)
+{
+    change([](hid_t file) {
+        const hid_t dataset = H5Dopen2(file, "/particles/trajectory/position/value", H5P_DEFAULT);
+        const hsize_t start[3] = {0, 0, 0};
+        const std::vector<double> zeros(1020);  // a chunk: 17 frames of 20 particles
+        const std::uint32_t without_filters = 1;
+        ASSERT_GE(
+            H5Dwrite_chunk(dataset, H5P_DEFAULT, without_filters, start, 1020 * 8, zeros.data()),
+            0);
+        H5Dclose(dataset);
+    });
+    expect_refused({"/particles/trajectory/position/value", "must have values with a checksum"});
+}
+
 TEST_F(DamagedRun, IsRefusedWhenAContactHasNoParticle)
 {
     const std::vector<std::int32_t> wrong(14, 20);  // particles are 0 ... 19
