@@ -46,12 +46,26 @@ inline PairVelocities with_image(PairVelocities v, const Pair& pair, const State
     return v;
 }
 
-/// Total velocities of i and of the image of j.
+/// Total velocities of i and of the image of j at non-affine velocities v and a shear rate.
+inline PairVelocities moving(const State& s, const Velocities& v, double rate, const Pair& pair)
+{
+    return with_image(
+        {v[pair.i] + rate * ambient(s, pair.i), v[pair.j] + rate * ambient(s, pair.j)}, pair, s,
+        rate);
+}
+
 inline PairVelocities moving(const State& s, const Evaluation& e, const Pair& pair)
 {
-    return with_image({e.nonaffine[pair.i] + e.shear_rate * ambient(s, pair.i),
-                       e.nonaffine[pair.j] + e.shear_rate * ambient(s, pair.j)},
-                      pair, s, e.shear_rate);
+    return moving(s, e.nonaffine, e.shear_rate, pair);
+}
+
+/// Relative motion of the surfaces of a pair.
+inline ContactMotion relative_motion(const State& s, const PairVelocities& v, const Pair& pair)
+{
+    const double a = s.radius[pair.i], b = s.radius[pair.j], harmonic = 2 * a * b / (a + b);
+    const Vec3 &n = pair.normal, turn_i = v.i.tail<3>(), turn_j = v.j.tail<3>();
+    const Vec3 relative = v.j.head<3>() - v.i.head<3>() - (a * turn_i + b * turn_j).cross(n);
+    return {relative - relative.dot(n) * n, harmonic * (turn_j - turn_i).cross(n)};
 }
 
 inline lubrication::PairLoad negative(const lubrication::PairLoad& load)

@@ -132,6 +132,25 @@ std::vector<ContactLoad> contact_loads(const std::vector<PairState>& pairs, cons
     return loads;
 }
 
+BlockCoefficients scaled(const BlockCoefficients& c, const lubrication::GapFactors& f)
+{
+    return {f.L * c.xa,   f.l * c.ya,   f.l * c.yb11, f.l * c.yb21,
+            f.l * c.yc11, f.l * c.yc12, f.l * c.yc22};
+}
+
+double shear_moment(const Vec3& d, const Vec3& force)
+{
+    return 0.5 * (d.x() * force.y() + d.y() * force.x());
+}
+
+void add_block(ResistanceMatrix& matrix, const Pair& pair, const BlockCoefficients& c)
+{
+    const Vec3& n = pair.normal;
+    add_pair(matrix.diagonal[pair.i], n, c.xa, c.ya, c.yb11, c.yc11);
+    add_pair(matrix.diagonal[pair.j], n, c.xa, c.ya, -c.yb21, c.yc22);
+    matrix.pairs.push_back({pair.i, pair.j, pair.candidate, n, c.xa, c.ya, c.yb11, c.yb21, c.yc12});
+}
+
 void assemble_matrix(const State& s, const Evaluation& e, Workspace::Buffers& b)
 {
     ResistanceMatrix& matrix = b.matrix;
@@ -143,37 +162,34 @@ void assemble_matrix(const State& s, const Evaluation& e, Workspace::Buffers& b)
     matrix.pairs.clear();
     for (const PairState& p : e.pairs) {
         if (p.factors.L == 0) continue;  // repulsion alone
-        const BlockCoefficients& c = b.coefficients[p.pair.candidate];
-        const auto [L, l] = p.factors;
-        const Vec3& n = p.pair.normal;
-        add_pair(matrix.diagonal[p.pair.i], n, L * c.xa, l * c.ya, l * c.yb11, l * c.yc11);
-        add_pair(matrix.diagonal[p.pair.j], n, L * c.xa, l * c.ya, -l * c.yb21, l * c.yc22);
-        matrix.pairs.push_back({p.pair.i, p.pair.j, p.pair.candidate, n, L * c.xa, l * c.ya,
-                                l * c.yb11, l * c.yb21, l * c.yc12});
+        add_block(b.matrix, p.pair, scaled(b.coefficients[p.pair.candidate], p.factors));
     }
 }
 
-/// Loads of the force balance and what the shear stress needs of them.
-struct Loads {
-    double affine = 0;        // V eta_s + Ehat:R_SE:Ehat
-    double first_moment = 0;  // sum of sym(d, F)_xy of contacts and repulsion
-};
+}
 
 // An affine flow acts only through the relative velocity r n.grad U, so that the sums over the
 // resistance functions G, H, M that stress control needs are multiples of A and B (identities of
-// Jeffrey & Onishi's and Jeffrey's functions, tested in tests/engine): with e = Ehat n, s = a_i +
-// a_j,
-//   R_FE:Ehat = s XA (n.e) n + s YA (e - (n.e) n), s YB e x n;
-//   Ehat:R_SE:Ehat = s^2 XA (n.e)^2 + s^2 YA (e.e - (n.e)^2).
+// the functions of Jeffrey & Onishi and Jeffrey, tested): Ehat:R_SE:Ehat = s^2 XA (n.e)^2 + s^2 YA
+// (e.e - (n.e)^2).
+AffineLoad affine_load(const State& s, const Pair& pair, const BlockCoefficients& c)
+{
+    const Vec3& n = pair.normal;
+    const double sum = s.radius[pair.i] + s.radius[pair.j];
+    const Vec3 strain(0.5 * n.y(), 0.5 * n.x(), 0);
+    const double normal = n.x() * n.y();
+    const Vec3 tangential = strain - normal * n, twist = strain.cross(n);
+    const Vec3 force = sum * (c.xa * normal * n + c.ya * tangential);
+    return {{force, sum * c.yb11 * twist, -force, sum * c.yb21 * twist},
+            sum * sum * (c.xa * normal * normal + c.ya * tangential.squaredNorm())};
+}
+
 Loads assemble_loads(const State& s, const Evaluation& e, Workspace::Buffers& b)
 {
     b.unit_load.assign(s.size(), Vec6::Zero());
     b.fixed_load.assign(s.size(), Vec6::Zero());
     Loads result;
     result.affine = solvent_resistance(s, e.model);
-    const auto shear_moment = [](const Vec3& d, const Vec3& f) {
-        return 0.5 * (d.x() * f.y() + d.y() * f.x());
-    };
     for (const PairState& p : e.pairs) {
         const Vec3& n = p.pair.normal;
         if (p.repulsion != 0) {
@@ -182,20 +198,12 @@ Loads assemble_loads(const State& s, const Evaluation& e, Workspace::Buffers& b)
             b.fixed_load[p.pair.j].head<3>() -= force;
             result.first_moment += shear_moment(p.pair.separation, force);
         }
-        if (p.dashpot) {
-            add(b.unit_load, p.pair, dashpot_unit_load(s, p));
-            continue;
-        }
-        if (p.factors.L == 0) continue;
-        const BlockCoefficients& c = b.coefficients[p.pair.candidate];
-        const double sum = s.radius[p.pair.i] + s.radius[p.pair.j];
-        const Vec3 strain(0.5 * n.y(), 0.5 * n.x(), 0);
-        const double xa = sum * p.factors.L * c.xa, l = sum * p.factors.l;
-        const double normal = n.x() * n.y();
-        const Vec3 tangential = strain - normal * n, twist = strain.cross(n);
-        const Vec3 force = xa * normal * n + l * c.ya * tangential;
-        add(b.unit_load, p.pair, {force, l * c.yb11 * twist, -force, l * c.yb21 * twist});
-        result.affine += sum * (xa * normal * normal + l * c.ya * tangential.squaredNorm());
+        if (p.dashpot) add(b.unit_load, p.pair, dashpot_unit_load(s, p));
+        if (p.dashpot || p.factors.L == 0) continue;
+        const AffineLoad affine =
+            affine_load(s, p.pair, scaled(b.coefficients[p.pair.candidate], p.factors));
+        add(b.unit_load, p.pair, affine.load);
+        result.affine += affine.stress;
     }
     for (const ContactLoad& c : e.contacts) {
         const Pair& pair = e.pairs[c.pair].pair;
@@ -205,32 +213,14 @@ Loads assemble_loads(const State& s, const Evaluation& e, Workspace::Buffers& b)
     return result;
 }
 
+namespace {
+
 // b = fixed + rate * unit
 Velocities combined(const Velocities& fixed, double rate, const Velocities& unit)
 {
     Velocities sum(fixed);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += rate * unit[i];
     return sum;
-}
-
-// One solve: at an imposed rate, or by the rank-one form of stress control.
-void solve_at_once(const State& s, const Loads& loads, Workspace::Buffers& b, Evaluation& e)
-{
-    e.nonaffine = b.history.guess(s.time);
-    if (const auto* rate = std::get_if<ImposedRate>(&e.control)) {
-        e.shear_rate = rate->value;
-        e.solve = b.solver.solve({b.matrix}, combined(b.fixed_load, rate->value, b.unit_load),
-                                 e.nonaffine);
-    } else {
-        const double free =
-            std::get<ImposedStress>(e.control).value * s.box.volume() - loads.first_moment;
-        e.solve =
-            b.solver.solve({b.matrix, &b.unit_load, 1 / loads.affine},
-                           combined(b.fixed_load, free / loads.affine, b.unit_load), e.nonaffine);
-        e.shear_rate = (free + dot(b.unit_load, e.nonaffine)) / loads.affine;
-    }
-    b.history.remember(s.time, e.nonaffine);
-    if (!e.model.background_drag) remove_drift(s, e.nonaffine);
 }
 
 // Volume times the shear stress x F of the dashpots at velocities V + rate U_inf.
@@ -277,6 +267,27 @@ void solve_twice(const State& s, const Loads& loads, Workspace::Buffers& b, Eval
 
 }
 
+void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
+                   Workspace::Buffers& b, Evaluation& e)
+{
+    e.nonaffine = history.guess(s.time);
+    if (const auto* rate = std::get_if<ImposedRate>(&e.control)) {
+        e.shear_rate = rate->value;
+        e.solve = b.solver.solve({b.matrix}, combined(b.fixed_load, rate->value, b.unit_load),
+                                 e.nonaffine);
+    } else {
+        const double free =
+            std::get<ImposedStress>(e.control).value * s.box.volume() - loads.first_moment;
+        e.solve =
+            b.solver.solve({b.matrix, &b.unit_load, 1 / loads.affine},
+                           combined(b.fixed_load, free / loads.affine, b.unit_load), e.nonaffine);
+        e.shear_rate = (free + dot(b.unit_load, e.nonaffine)) / loads.affine;
+    }
+    history.remember(s.time, e.nonaffine);
+    b.last_rate = e.shear_rate;
+    if (!e.model.background_drag) remove_drift(s, e.nonaffine);
+}
+
 Evaluation prepare(const State& state, const Model& model, const Control& control,
                    Workspace::Buffers& b)
 {
@@ -313,7 +324,7 @@ Evaluation evaluate(const State& state, const Model& model, const Control& contr
     if (uses_dashpot(model) && std::holds_alternative<ImposedStress>(control))
         solve_twice(state, loads, b, e);
     else
-        solve_at_once(state, loads, b, e);
+        solve_at_once(state, loads, b.history[0], b, e);
     complete(state, e);
     return e;
 }
@@ -334,12 +345,7 @@ Velocities total_velocities(const State& state, const Evaluation& e)
 
 ContactMotion relative_motion(const State& s, const Evaluation& e, const Pair& pair)
 {
-    const auto [vi, vj] = moving(s, e, pair);
-    const double a = s.radius[pair.i], b = s.radius[pair.j], harmonic = 2 * a * b / (a + b);
-    const Vec3& n = pair.normal;
-    const Vec3 relative =
-        vj.head<3>() - vi.head<3>() - (a * vi.tail<3>() + b * vj.tail<3>()).cross(n);
-    return {relative - relative.dot(n) * n, harmonic * (vj.tail<3>() - vi.tail<3>()).cross(n)};
+    return relative_motion(s, moving(s, e, pair), pair);
 }
 
 lubrication::PairResistance resistance(const State& s, const PairState& p)

@@ -108,6 +108,21 @@ private:
 /// definite, coinciding particles, a value that is not finite).
 Evaluation evaluate(const State& state, const Model& model, const Control& control,
                     Workspace& workspace);
+
+/// A stage of a linearly implicit step (step.h). The contact springs are taken at the positions
+/// that the stage itself reaches after the time `ahead`: each touching pair resists the relative
+/// motion of its surfaces with ahead * stiffness more. In the second stage, twice that resistance
+/// times the motion of the first one is added to the loads.
+struct ImplicitStage {
+    double ahead = 0;                     // [1/rate0] > 0
+    double step = 0;                      // length of the whole step [1/rate0]
+    const Evaluation* earlier = nullptr;  // the first stage, in the second one
+};
+
+/// Velocities of such a stage. Errors: as evaluate, and input for the dashpot variant.
+Evaluation evaluate_implicitly(const State& state, const Model& model, const Control& control,
+                               const ImplicitStage& stage, Workspace& workspace);
+
 DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
                                       const Control& control, Workspace& workspace);
 

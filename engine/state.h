@@ -22,6 +22,7 @@ struct State {
     std::vector<Contact> contacts;  // sorted by (i, j)
     double strain = 0;              // accumulated [-]
     double time = 0;                // [1/rate0]
+    double time_step = 0;           // proposed for the next implicit step [1/rate0]; 0: none yet
 
     int size() const { return static_cast<int>(radius.size()); }
 };

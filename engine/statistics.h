@@ -4,9 +4,9 @@
 //   tau = 1/2 + sum_{t >= 1} rho(t)       integrated correlation time [sample spacings]
 //   standard error^2 = 2 tau variance / n
 // and the sum ends at the smallest window w >= 5 tau(w) (self-consistent window: A. D. Sokal, in
-// Functional Integration, 131-192, 1997; Madras & Sokal, J. Stat. Phys. 50, 109, 1988, appendix C).
+// Functional Integration, 131-192, 1997; Madras & Sokal, J. Stat. Phys. 50, 109, 1988).
 // The bias from subtracting the sample mean is removed to first order (Wolff, Comput. Phys. Commun.
-// 156, 143, 2004, eq. 32). Cross-check: blocking (Flyvbjerg & Petersen, J. Chem. Phys. 91, 461,
+// 156, 143, 2004). Cross-check: blocking (Flyvbjerg & Petersen, J. Chem. Phys. 91, 461,
 // 1989) at the block length B of least total error, B^3 > 2 n (2 tau)^2 (Lee et al., Phys. Rev. E
 // 83, 066706, 2011). standard_error is the larger of the two.
 //

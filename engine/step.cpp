@@ -1,6 +1,7 @@
 #include "engine/step.h"
 
 #include "engine/error.h"
+#include "engine/workspace.h"
 
 #include <algorithm>
 #include <cmath>
@@ -123,36 +124,97 @@ double stable_time_step(const Evaluation& evaluation)
     return tau > 0 ? std::min(dt, tau) : dt;
 }
 
-void advance(State& state, const Model& model, const Control& control, const Stepping& stepping,
-             const StepLimit& limit, const Evaluation& first, Workspace& workspace)
+Evaluation implicit_step(State& state, const Model& model, const Control& control, double dt,
+                         double strain_limit, Workspace& workspace)
 {
+    const double ahead = (1 - std::sqrt(0.5)) * dt;
+    const Evaluation first =
+        evaluate_implicitly(state, model, control, {ahead, dt, nullptr}, workspace);
+    State next = moved(state, {{&first, &state, dt}}, workspace);
+    Evaluation second = evaluate_implicitly(next, model, control, {ahead, dt, &first}, workspace);
+    const double rate = (first.shear_rate + second.shear_rate) / 2;
+    const double left = strain_limit - state.strain;
+    const bool passes = rate * dt > left && rate * dt * 0.9 < left;
+    const double time = passes ? left / rate : dt;
+    next = moved(state, {{&first, &state, time / 2}, {&second, &next, time / 2}}, workspace);
+    if (passes) next.strain = strain_limit;
+    wrap(next.box, next.position);
+    state = std::move(next);
+    return second;
+}
+
+namespace {
+
+// the last two steps before a limit are made equal rather than leaving a sliver
+double shortened(double step, double left)
+{
+    return left <= step ? left : left < 2 * step ? left / 2 : step;
+}
+
+constexpr double growth = 1.3;        // largest ratio of successive implicit steps
+constexpr double first_share = 0.05;  // of the displacement, in the first implicit step
+constexpr double accepted_excess =
+    2;  // a step that moves more than this many displacements is undone
+
+Evaluation advance_implicitly(State& state, const Model& model, const Control& control,
+                              const Stepping& stepping, const StepLimit& limit,
+                              Workspace& workspace, const Evaluation* first)
+{
+    double dt = state.time_step;
+    if (dt == 0) {
+        const Evaluation start = first ? *first : evaluate(state, model, control, workspace);
+        dt = first_share * displacement_time_step(start, stepping.displacement);
+    }
+    const double known_rate = first ? first->shear_rate : workspace.buffers().last_rate;
+    for (;;) {
+        double h = shortened(dt, limit.time - state.time);
+        const double left = limit.strain - state.strain;
+        if (known_rate * h > 0.5 * left && known_rate > 0)
+            // slightly too long: the step itself finds how much it needs to land
+            h = std::min(h, 1.03 * shortened(known_rate * h, left) / known_rate);
+        State next = state;
+        Evaluation second = implicit_step(next, model, control, h, limit.strain, workspace);
+        const double proposed = displacement_time_step(second, stepping.displacement);
+        const bool passed = next.strain > limit.strain + 1e-12;
+        if (h <= accepted_excess * proposed && !passed) {
+            next.time_step = std::min(proposed, growth * dt);
+            state = std::move(next);
+            return second;
+        }
+        dt = passed ? 0.5 * h : std::max(0.2 * h, std::min(proposed, 0.5 * h));
+        if (!(dt > 1e-14)) throw Error(ErrorKind::numerics, "", "the time step vanishes");
+    }
+}
+
+}
+
+Evaluation advance(State& state, const Model& model, const Control& control,
+                   const Stepping& stepping, const StepLimit& limit, Workspace& workspace,
+                   const Evaluation* known)
+{
+    if (stepping.scheme == Scheme::implicit)
+        return advance_implicitly(state, model, control, stepping, limit, workspace, known);
+    Evaluation first = known ? *known : evaluate(state, model, control, workspace);
     double dt =
         std::min(displacement_time_step(first, stepping.displacement), stable_time_step(first));
     if (!std::isfinite(dt)) throw Error(ErrorKind::numerics, "", "nothing moves: no time step");
-    // the last two steps before a limit are made equal rather than leaving a sliver
-    const auto shortened = [](double h, double left) {
-        return left <= h ? left : left < 2 * h ? left / 2 : h;
-    };
     dt = shortened(dt, limit.time - state.time);
     const double left = limit.strain - state.strain, rate = first.shear_rate;
     if (rate * dt >= left) {
         // strain marching lands exactly unless the rate changes much within the step
         State landed = state;
-        try {
-            step(landed, model, control, stepping.scheme, March::strain, left, first, workspace);
-        } catch (const Error&) {
-            landed.time = std::numeric_limits<double>::quiet_NaN();
-        }
+        step(landed, model, control, stepping.scheme, March::strain, left, first, workspace);
         const double took = landed.time - state.time;
         if (took > 0.5 * left / rate && took < 2 * left / rate) {
             state = std::move(landed);
-            return;
+            return first;
         }
         dt = left / rate;
     } else if (rate > 0) {
         dt = shortened(rate * dt, left) / rate;
     }
     step(state, model, control, stepping.scheme, March::time, dt, first, workspace);
+    return first;
 }
 
 }

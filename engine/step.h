@@ -1,7 +1,11 @@
-// engine/step.h -- time stepping: Euler and the consistent predictor-corrector (Heun).
+// engine/step.h -- time stepping: Euler, Heun (predictor-corrector) and a linearly implicit scheme.
 //
-// Box, particles and springs move with the same averaged rates; the velocities are functions of the
-// state (engine/README.md, section "Time stepping").
+// Box, particles and springs move with the same averaged rates. Euler and Heun are explicit: their
+// step is bound by the stiffness of the contacts. The implicit scheme is the Rosenbrock method ROS2
+// with gamma = 1 - 1/sqrt(2) (Verwer, Spee, Blom, Hundsdorfer, SIAM J. Sci. Comput. 20, 1456,
+// 1999), which is of second order for any approximation of the Jacobian and L-stable for linear
+// springs; the Jacobian here holds the contact springs (engine/implicit.cpp). Friction is not
+// smooth: there the error is of first order with a small coefficient, as for Heun.
 #pragma once
 #include "engine/evaluation.h"
 #include "engine/model.h"
@@ -11,12 +15,12 @@
 
 namespace sigmaflow {
 
-enum class Scheme { euler, heun };
+enum class Scheme { euler, heun, implicit };
 enum class March { time, strain };
 
 struct Stepping {
     Scheme scheme = Scheme::heun;
-    double displacement = 1e-3;  // nothing moves by more than this in a step [a] > 0
+    double displacement = 1e-3;  // nothing moves by much more than this in a step [a] > 0
 };
 
 /// Where a step has to stop at the latest.
@@ -25,8 +29,8 @@ struct StepLimit {
     double time = std::numeric_limits<double>::infinity();
 };
 
-/// One step of length h in time [1/rate0] or in strain [-]; `first` is the evaluation of `state`.
-/// Strain marching divides by the rates of the stages: it needs them positive.
+/// One explicit step of length h in time [1/rate0] or in strain [-]; `first` is the evaluation of
+/// `state`. Strain marching divides by the rates of the stages: it needs them positive.
 void step(State& state, const Model& model, const Control& control, Scheme scheme, March march,
           double h, const Evaluation& first, Workspace& workspace);
 
@@ -39,9 +43,17 @@ double displacement_time_step(const Evaluation& evaluation, double displacement)
 /// up to 2 over that rate.
 double stable_time_step(const Evaluation& evaluation);
 
+/// One implicit step of length dt. If it would pass the strain limit by a few per cent at most,
+/// both stages act for less time, so that the step lands on it. Returns the second stage.
+Evaluation implicit_step(State& state, const Model& model, const Control& control, double dt,
+                         double strain_limit, Workspace& workspace);
+
 /// One adaptive step, shortened to land on the limits exactly; `first` is the evaluation of
-/// `state`. The shear rate may be negative for a while; then the box goes back.
-void advance(State& state, const Model& model, const Control& control, const Stepping& stepping,
-             const StepLimit& limit, const Evaluation& first, Workspace& workspace);
+/// `state`, if it is known already. The shear rate may be negative for a while; then the box goes
+/// back. Returns an evaluation of the step: the first stage, or the second one of the implicit
+/// scheme.
+Evaluation advance(State& state, const Model& model, const Control& control,
+                   const Stepping& stepping, const StepLimit& limit, Workspace& workspace,
+                   const Evaluation* first = nullptr);
 
 }

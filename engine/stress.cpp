@@ -177,7 +177,8 @@ DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
     find_rate_and_stress(state, d);
     superpose(state, d);
     complete(state, d.evaluation);
-    b.history.remember(state.time, d.evaluation.nonaffine);
+    b.history[0].remember(state.time, d.evaluation.nonaffine);
+    b.last_rate = d.evaluation.shear_rate;
     return d;
 }
 

@@ -30,7 +30,8 @@ struct Workspace::Buffers {
     std::vector<BlockCoefficients> coefficients;  // one per candidate
     ResistanceSolver solver;
     ResistanceMatrix matrix;
-    SolutionHistory history;
+    std::array<SolutionHistory, 2> history;    // of both stages of a step
+    double last_rate = 0;                      // of the last solution
     Velocities unit_load, fixed_load;          // per unit rate, rate free
     Velocities unit_velocity, fixed_velocity;  // of the dashpot variant
 };
@@ -54,6 +55,26 @@ void remove_drift(const State& state, Velocities& v);
 
 /// Volume times the shear stress of the solvent per unit shear rate.
 double solvent_resistance(const State& state, const Model& model);
+
+/// Loads of the force balance (unit_load and fixed_load of the buffers) and what the shear stress
+/// needs.
+struct Loads {
+    double affine = 0;        // V eta_s + Ehat:R_SE:Ehat
+    double first_moment = 0;  // sum of sym(d, F)_xy of contacts and repulsion
+};
+Loads assemble_loads(const State& state, const Evaluation& evaluation, Workspace::Buffers& buffers);
+
+/// A pair in the affine flow of unit rate: its load and Ehat:R_SE:Ehat of the pair. With e = Ehat n
+/// and s = a_i + a_j the load is s XA (n.e) n + s YA (e - (n.e) n), s YB e x n.
+struct AffineLoad {
+    lubrication::PairLoad load;
+    double stress;
+};
+AffineLoad affine_load(const State& state, const Pair& pair, const BlockCoefficients& c);
+
+/// One solve: at an imposed rate, or by the rank-one form of stress control.
+void solve_at_once(const State& state, const Loads& loads, SolutionHistory& history,
+                   Workspace::Buffers& buffers, Evaluation& evaluation);
 
 /// Sets the slip velocities of the contacts; throws if a velocity is not finite.
 void complete(const State& state, Evaluation& evaluation);

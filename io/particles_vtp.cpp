@@ -83,12 +83,12 @@ void add_field_data(vtkPolyData* polydata, const Frame& frame)
                     [&](std::size_t k) { return values[k]; });
     };
     const Box& box = frame.state.box;
-    add("TimeValue", "1", {frame.state.strain});
-    add("strain", "1", {frame.state.strain});
+    add("TimeValue", "-", {frame.state.strain});
+    add("strain", "-", {frame.state.strain});
     add("time", "1/rate0", {frame.state.time});
     add("shear_rate", "rate0", {frame.sample.shear_rate});
     add("shear_stress", "sigma0", {frame.sample.shear_stress});
-    add("volume_fraction", "1", {frame.volume_fraction});
+    add("volume_fraction", "-", {frame.volume_fraction});
     add("box_length", "a", {box.length.x(), box.length.y(), box.length.z()});
     add("box_offset", "a", {box.offset});
 }
@@ -131,7 +131,7 @@ vtkSmartPointer<vtkPolyData> particles_polydata(const Frame& frame)
     polydata->SetVerts(vertices);
 
     vtkPointData* data = polydata->GetPointData();
-    add_numbers(data, "nonaffine_speed", "1", n,
+    add_numbers(data, "nonaffine_speed", "-", n,
                 [&](std::size_t k) { return frame.nonaffine_speed[k]; });
     add_numbers(data, "radius", "a", n, [&](std::size_t k) { return frame.state.radius[k]; });
     add_vectors(data, "velocity", "a rate0", frame.velocity);
@@ -167,7 +167,7 @@ vtkSmartPointer<vtkPolyData> contacts_polydata(const Frame& frame)
                 [&](std::size_t k) { return contacts[k].normal_force; });
     add_numbers(data, "tangential_force", "F*", n,
                 [&](std::size_t k) { return contacts[k].tangential_force.norm(); });
-    add_numbers(data, "xi", "1", n, [&](std::size_t k) { return contacts[k].xi; });
+    add_numbers(data, "xi", "-", n, [&](std::size_t k) { return contacts[k].xi; });
     add_integers(data, "sliding", n, [&](std::size_t k) { return contacts[k].sliding; });
     add_integers(data, "frictional", n, [&](std::size_t k) { return contacts[k].frictional; });
     add_integers(data, "i", n, [&](std::size_t k) { return contacts[k].i; });

@@ -127,8 +127,8 @@ public:
         write_words(box, "boundary", {"periodic", "periodic", "periodic"});
         scalars_.push_back(clock_.element<double>(box, "edges", {3, 3}, "a"));
         scalars_.push_back(clock_.element<double>(box, "offset", {}, "a"));
-        scalars_.push_back(clock_.element<double>(state, "strain", {}, "1"));
-        scalars_.push_back(clock_.element<double>(observables, "volume_fraction", {}, "1"));
+        scalars_.push_back(clock_.element<double>(state, "strain", {}, "-"));
+        scalars_.push_back(clock_.element<double>(observables, "volume_fraction", {}, "-"));
         visit_particle_arrays([&](auto name, auto unit, auto access) {
             using Value = Stored<ArrayElement<decltype(access)>>;
             Shape shape = Value::shape();

@@ -30,9 +30,9 @@ void visit_particle_arrays(const Visit& visit)
         "nonaffine_velocity", "a rate0",
         [](auto& frame) -> auto& { return frame.nonaffine_velocity; });
     visit(
-        "nonaffine_speed", "1", [](auto& frame) -> auto& { return frame.nonaffine_speed; });
+        "nonaffine_speed", "-", [](auto& frame) -> auto& { return frame.nonaffine_speed; });
     visit(
-        "contact_number", "1", [](auto& frame) -> auto& { return frame.contact_number; });
+        "contact_number", "-", [](auto& frame) -> auto& { return frame.contact_number; });
     visit(
         "stress", "sigma0 a^3", [](auto& frame) -> auto& { return frame.particle_stress; });
 }
@@ -66,7 +66,7 @@ void visit_columns(const ContactForce*, const Visit& visit)
     visit(
         "end", "a", [](auto& contact) -> auto& { return contact.end; });
     visit(
-        "xi", "1", [](auto& contact) -> auto& { return contact.xi; });
+        "xi", "-", [](auto& contact) -> auto& { return contact.xi; });
     visit(
         "normal_force", "F*", [](auto& contact) -> auto& { return contact.normal_force; });
     visit(

@@ -24,7 +24,10 @@ namespace {
 std::string joined(std::initializer_list<int> numbers)
 {
     std::string result;
-    for (int number : numbers) result += (result.empty() ? "" : ".") + std::to_string(number);
+    for (int number : numbers) {
+        if (!result.empty()) result += '.';
+        result += std::to_string(number);
+    }
     return result;
 }
 

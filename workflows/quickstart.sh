@@ -3,6 +3,6 @@
 # Options go to `sigmaflow run`, e.g. --out DIR.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
-bash "$here/setup.sh"
+bash "$here/setup.sh" sigmaflow
 cd "$here/.."
 exec build/release/sigmaflow run workflows/quickstart.json "$@"

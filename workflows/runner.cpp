@@ -28,8 +28,9 @@ void run_step(const Step& step, std::size_t number, std::size_t count, Context& 
 {
     context.step_name = step.name;
     context.results = Json::object();
-    context.progress.begin("[" + std::to_string(number) + "/" + std::to_string(count) + "] " +
-                           step.name);
+    std::string title = "[";
+    title += std::to_string(number) + "/" + std::to_string(count) + "] " + step.name;
+    context.progress.begin(title);
     const auto start = std::chrono::steady_clock::now();
     try {
         step.run(context);

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian packages), configures and builds the preset "release".
 # Called by workflows/quickstart.sh and tests/run.sh; nothing else is downloaded.
+# An argument names the one target to build.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -44,4 +45,4 @@ fi
 
 command -v cmake >/dev/null || { echo "setup: cmake is missing" >&2; exit 1; }
 cmake --preset release
-cmake --build --preset release --parallel "$(nproc)"
+cmake --build --preset release --parallel "$(nproc)" ${1:+--target "$1"}

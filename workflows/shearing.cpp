@@ -57,8 +57,9 @@ void ShearingParameters::describe(io::Fields& f)
       "imposed shear stress; either this or rate");
     f("rate", rate, io::above_to(0, 1e9), "rate0", "imposed shear rate; either this or stress");
     f("scheme", stepping.scheme,
-      io::Words<Scheme>{{"heun", Scheme::heun}, {"euler", Scheme::euler}},
-      "time stepping: predictor-corrector of second order, or Euler");
+      io::Words<Scheme>{
+          {"heun", Scheme::heun}, {"euler", Scheme::euler}, {"implicit", Scheme::implicit}},
+      "time stepping: predictor-corrector, Euler, or implicit contact springs (longer steps)");
     f("displacement", stepping.displacement, io::above_to(0, 0.1), "a",
       "nothing moves by more than this in one step");
     f("series_interval", series_interval, io::between(1e-6, 1e3), "strain",
@@ -189,7 +190,7 @@ ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
             progress.update(std::max(state.strain / task.strain, state.time / task.time),
                             details_text(state, evaluation.shear_rate));
             const StepLimit limit{recorder.target(), task.time};
-            advance(state, model, task.control, task.stepping, limit, evaluation, workspace);
+            advance(state, model, task.control, task.stepping, limit, workspace, &evaluation);
         }
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::numerics) throw;

@@ -8,21 +8,23 @@
 #include "engine/step.h"
 #include "io/case_file.h"
 
+#include <sys/resource.h>
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
 
 using namespace sigmaflow;
 
 namespace {
 
 struct Options {
-    int particles = 500, steps = 200;
+    int particles = 500, steps = 1000000;
     double volume_fraction = 0.58, stress = 2, pre_shear = 0.3, displacement = 1e-3;
     double normal_stiffness = 400, debye_length = 0.05, tolerance = 1e-4;
+    double strain = 0.01;
+    std::string scheme = "heun";
     std::string state, save;
     std::vector<std::string> solvers{"pcg"};
 };
@@ -57,7 +59,7 @@ State start_of(const Options& o, const Model& m)
     const Control control = ImposedStress{o.stress};
     Workspace workspace({SolverKind::pcg, 1e-4});
     while (s.strain < o.pre_shear)
-        advance(s, m, control, {}, {o.pre_shear}, evaluate(s, m, control, workspace), workspace);
+        advance(s, m, control, {Scheme::implicit, 5e-3}, {o.pre_shear}, workspace);
     if (!o.save.empty()) io::write_case(o.save, s, m, control);
     return s;
 }
@@ -68,36 +70,41 @@ void measure(const Options& o, const Model& m, State s, const std::string& name)
                                   o.tolerance};
     const Control control = ImposedStress{o.stress};
     Workspace workspace(settings);
+    const Stepping stepping{o.scheme == "implicit" ? Scheme::implicit : Scheme::heun,
+                            o.displacement};
     // a few steps first: the pattern is analysed and the buffers grow
-    for (int k = 0; k < 3; ++k)
-        advance(s, m, control, {Scheme::heun, o.displacement}, {},
-                evaluate(s, m, control, workspace), workspace);
+    for (int k = 0; k < 10; ++k) advance(s, m, control, stepping, {}, workspace);
     const double strain = s.strain, time = s.time, start = cpu_seconds();
-    long iterations = 0, fallbacks = 0;
+    long iterations = 0, fallbacks = 0, steps = 0;
     double residual = 0;
-    for (int k = 0; k < o.steps; ++k) {
-        const Evaluation e = evaluate(s, m, control, workspace);
+    for (; steps < o.steps && s.strain < strain + o.strain; ++steps) {
+        const Evaluation e = advance(s, m, control, stepping, {strain + o.strain}, workspace);
         iterations += e.solve.iterations;
         fallbacks += e.solve.fell_back;
         residual = std::max(residual, e.solve.residual);
-        advance(s, m, control, {Scheme::heun, o.displacement}, {}, e, workspace);
     }
     const double spent = cpu_seconds() - start;
+    const Sample last = make_sample(s, evaluate_in_detail(s, m, control, workspace));
     rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     const nlohmann::ordered_json line{
         {"solver", name},
         {"tolerance", o.tolerance},
         {"particles", s.size()},
-        {"steps", o.steps},
-        {"ms_per_step", 1e3 * spent / o.steps},
-        {"ms_per_evaluation", 1e3 * spent / o.steps / 2},
-        {"iterations", static_cast<double>(iterations) / o.steps},
+        {"scheme", o.scheme},
+        {"displacement", o.displacement},
+        {"steps", steps},
+        {"ms_per_step", 1e3 * spent / steps},
+        {"ms_per_evaluation", 1e3 * spent / steps / 2},
+        {"iterations", static_cast<double>(iterations) / steps},
         {"largest_residual", residual},
         {"fallbacks", fallbacks},
         {"strain", s.strain - strain},
         {"mean_shear_rate", (s.strain - strain) / (s.time - time)},
         {"seconds_per_strain", spent / (s.strain - strain)},
+        {"contact_number", last.contact_number},
+        {"sliding_fraction", last.sliding_fraction},
+        {"smallest_xi", last.smallest_xi},
         {"peak_memory_MB", static_cast<double>(usage.ru_maxrss) / 1024}};
     std::cout << line.dump() << std::endl;
 }
@@ -116,7 +123,9 @@ int main(int argc, char** argv)
     app.add_option("--pre-shear", o.pre_shear, "strain before the measurement");
     app.add_option("--state", o.state, "start from a state instead of a packing (case file)");
     app.add_option("--save", o.save, "write the pre-sheared state (case file)");
-    app.add_option("--steps", o.steps);
+    app.add_option("--steps", o.steps, "at most");
+    app.add_option("--strain", o.strain, "measured");
+    app.add_option("--scheme", o.scheme, "heun, implicit");
     app.add_option("--displacement", o.displacement, "a");
     app.add_option("--solver", o.solvers, "pcg, cholesky");
     app.add_option("--tolerance", o.tolerance);

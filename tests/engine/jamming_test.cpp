@@ -21,7 +21,7 @@ bool jams(State& s, double stress, double strain, double time, JammingWindow& wi
             window = monitor.last_window();
             return true;
         }
-        advance(s, model, ImposedStress{stress}, {}, {strain, time}, e, workspace);
+        advance(s, model, ImposedStress{stress}, {}, {strain, time}, workspace, &e);
     }
     window = monitor.last_window();
     return false;

@@ -84,4 +84,4 @@ check(active is not None and active.GetName() == "nonaffine_speed", "active scal
 
 if wrong:
     sys.exit("wrong:\n" + "\n".join(wrong))
-print("ParaView", GetParaViewVersion(), "opens the series as it should be")
+print("ParaView", str(GetParaViewVersion()), "opens the series as it should be")

@@ -1,7 +1,9 @@
 // The command line: what goes to stdout and stderr, and the exit codes.
 #include "tests/workflows/program.h"
 
-#include "io/json_document.h"
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 namespace sigmaflow::workflows {
 
@@ -118,6 +120,17 @@ TEST_F(CommandLine, ManifestOfAnEarlierRunCannotRemoveFilesElsewhere)
             (folder / "precious.txt").string() + R"("}]})");
     EXPECT_EQ(run("run w.json").exit_code, 0);
     EXPECT_EQ(text_of(folder / "precious.txt"), "precious");
+}
+
+TEST_F(CommandLine, FolderThatAnotherProcessWritesToIs75)
+{
+    write("w.json", packing);
+    ASSERT_EQ(run("run w.json --out used").exit_code, 0);
+    const int other = open((folder / "used").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    ASSERT_EQ(flock(other, LOCK_EX | LOCK_NB), 0);
+    expect_error("run w.json --out used", 75, "another sigmaflow is writing to this folder");
+    close(other);
+    EXPECT_EQ(run("run w.json --out used").exit_code, 0);
 }
 
 TEST_F(CommandLine, QuietSaysNothingButResults)

@@ -5,6 +5,8 @@
 #include "workflows/report.h"
 #include "workflows/steps.h"
 
+#include <limits>
+
 namespace sigmaflow::workflows {
 
 namespace {
@@ -32,7 +34,7 @@ struct Plot {
         f("x", x, std::vector<std::string_view>{"strain", "time"}, "against strain or time");
         f("show_start_up", show_start_up,
           "also the run that this one continues, e.g. equilibrate, at negative strains");
-        f("logarithmic", logarithmic, "logarithmic y axis");
+        f("logarithmic", logarithmic, "logarithmic y axis; values <= 0 leave a gap");
         size.describe(f);
     }
 
@@ -46,6 +48,7 @@ struct Plot {
         const Estimate mean = estimate_mean(column(part, field_named(y).value));
         const double from = part.front().*field_named(x).value, to = x_values.back();
         const double low = mean.mean - mean.standard_error, high = mean.mean + mean.standard_error;
+        if (logarithmic && low <= 0) return;
         if (from > x_values.front())
             plot.spans.push_back({x_values.front(), from, "start-up, left out"});
         plot.bands.push_back({"standard error", {from, to}, {low, low}, {high, high}, mean_colour});
@@ -87,6 +90,9 @@ struct Plot {
             data.y.push_back(sample.*field_named(y).value);
         }
         data.line_width = 2;
+        if (logarithmic)  // a rate can be negative for a while: a gap in the curve
+            for (double& value : data.y)
+                if (value <= 0) value = std::numeric_limits<double>::quiet_NaN();
         const std::vector<double> x_values = data.x;
         plot.series.push_back(std::move(data));
         if (!x_values.empty()) mark_mean(run, x_values, plot);

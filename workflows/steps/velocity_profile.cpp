@@ -25,11 +25,13 @@ std::string csv_text(const Profiles& profiles)
     for (double strain : profiles.strain) text += ",u_at_" + io::number_text(strain);
     const MeanProfile& mean = profiles.mean;
     for (std::size_t k = 0; k < mean.y.size(); ++k) {
-        text += "\n" + io::number_text(mean.y[k]) + "," + io::number_text(mean.u[k]) + "," +
-                io::number_text(mean.standard_error[k]) + "," +
-                io::number_text(mean.volume_fraction[k]);
-        for (const VelocityProfile& one : profiles.instantaneous)
-            text += "," + io::number_text(one.u[k]);
+        text += '\n';
+        text += io::number_text(mean.y[k]);
+        const auto add = [&](double value) { text.append(1, ',').append(io::number_text(value)); };
+        add(mean.u[k]);
+        add(mean.standard_error[k]);
+        add(mean.volume_fraction[k]);
+        for (const VelocityProfile& one : profiles.instantaneous) add(one.u[k]);
     }
     return text + "\n";
 }
@@ -42,7 +44,7 @@ std::string number_of_units(double strain)
 render::Plot profile_plot(const Profiles& profiles, double spacing)
 {
     render::Plot plot;
-    plot.x.title = "$U$_{x}/($γ̇$ $L$_{y})";
+    plot.x.title = "$U_{x}$/($γ̇$ $L_{y}$)";
     plot.y.title = "$y$/$L_{y}$";
     plot.y.minimum = 0;
     plot.y.maximum = 1;
