@@ -1,6 +1,7 @@
 // The program `sigmaflow`: the command line, the only catch and the only exit code.
 #include "engine/error.h"
 #include "io/case_file.h"
+#include "workflows/blas_kernel.h"
 #include "workflows/help.h"
 #include "workflows/manifest.h"
 #include "workflows/runner.h"
@@ -79,6 +80,7 @@ int complain(const std::string& message, ErrorKind kind)
 
 int main(int argc, char** argv)
 {
+    workflows::choose_blas_kernel(argv);
     try {
         run_command(argc, argv);
         return 0;

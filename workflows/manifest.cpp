@@ -1,10 +1,10 @@
 #include "workflows/manifest.h"
 
 #include "io/atomic_file.h"
+#include "workflows/blas_kernel.h"
 
 #include <H5public.h>
 #include <SuiteSparse_config.h>
-#include <dlfcn.h>
 #include <unistd.h>
 #include <vtkVersionMacros.h>
 #include <CLI/Version.hpp>
@@ -45,14 +45,6 @@ std::string processor()
             if (const auto colon = line.find(": "); colon != std::string::npos)
                 return line.substr(colon + 2);
     return "unknown";
-}
-
-/// The kernel that OpenBLAS chose for this processor: another one gives other last bits.
-std::string blas_kernel()
-{
-    using Name = const char* (*)();
-    const auto name = reinterpret_cast<Name>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
-    return name ? std::string("OpenBLAS ") + name() : "not OpenBLAS";
 }
 
 }

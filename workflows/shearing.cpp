@@ -56,12 +56,17 @@ void ShearingParameters::describe(io::Fields& f)
     f("stress", stress, io::above_to(0, 1e9), "sigma0",
       "imposed shear stress; either this or rate");
     f("rate", rate, io::above_to(0, 1e9), "rate0", "imposed shear rate; either this or stress");
-    f("scheme", stepping.scheme,
+    f("scheme", scheme,
       io::Words<Scheme>{
           {"heun", Scheme::heun}, {"euler", Scheme::euler}, {"implicit", Scheme::implicit}},
       "time stepping: predictor-corrector, Euler, or implicit contact springs (longer steps)");
-    f("displacement", stepping.displacement, io::above_to(0, 0.1), "a",
-      "nothing moves by more than this in one step");
+    f("displacement", displacement, io::above_to(0, 0.1), "a",
+      "nothing moves by more than this in one step; default: 0.001, implicit 0.005");
+    f("solver", solver.kind,
+      io::Words<SolverKind>{{"pcg", SolverKind::pcg}, {"cholesky", SolverKind::cholesky}},
+      "resistance problem: preconditioned conjugate gradients, or a direct factorisation");
+    f("solver_tolerance", solver.tolerance, io::between(1e-12, 1e-2), "-",
+      "relative residual at which pcg stops; the error of the shear rate is far smaller");
     f("series_interval", series_interval, io::between(1e-6, 1e3), "strain",
       "strain between two rows of the time series");
     f("maximum_time", maximum_time, io::above(0), "1/rate0",
@@ -71,11 +76,26 @@ void ShearingParameters::describe(io::Fields& f)
 Control ShearingParameters::check(const io::JsonNode& node, const Plan& plan, double strain) const
 {
     plan.need_state(node);
-    const Control control = io::checked_control(stress, rate, plan.suspension.model, node);
+    const Model& model = plan.suspension.model;
+    const Control control = io::checked_control(stress, rate, model, node);
+    if (scheme == Scheme::implicit && model.contact_hydrodynamics == ContactHydrodynamics::dashpot)
+        throw node.error_at_key("scheme",
+                                "\"implicit\" needs contact_hydrodynamics \"lubrication\"");
     if (strain / series_interval > most_outputs)
         throw node.error_at_key("series_interval", "gives more than 1e7 rows, the strain is " +
                                                        io::number_text(strain));
     return control;
+}
+
+ShearingTask ShearingParameters::task(double strain, double frame_interval) const
+{
+    return {.control = rate ? Control(ImposedRate{*rate}) : Control(ImposedStress{*stress}),
+            .stepping = {scheme, displacement.value_or(scheme == Scheme::implicit ? 5e-3 : 1e-3)},
+            .solver = solver,
+            .strain = strain,
+            .time = time_limit(strain),
+            .series_interval = series_interval,
+            .frame_interval = frame_interval};
 }
 
 double ShearingParameters::time_limit(double strain) const
@@ -110,8 +130,8 @@ public:
     /// The next output, or the end.
     double target() const { return std::min({samples_.next(), frames_.next(), task_.strain}); }
 
-    /// Evaluates the state, in detail if there is something to record.
-    Evaluation record(State& state, const Model& model, Workspace& workspace)
+    /// Evaluates the state if there is something to record.
+    std::optional<Evaluation> record(State& state, const Model& model, Workspace& workspace)
     {
         // a step that was cut at an output lands on it but for rounding
         if (reached(state.strain, target()) && reached(target(), state.strain))
@@ -120,7 +140,7 @@ public:
         last_ = arrived_ || state.time >= task_.time;
         const bool on_grid = samples_.due(state.strain), frame = frames_.due(state.strain);
         has_sample_ = has_frame_ = false;
-        if (!on_grid && !frame && !last_) return evaluate(state, model, task_.control, workspace);
+        if (!on_grid && !frame && !last_) return std::nullopt;
 
         DetailedEvaluation detailed = evaluate_in_detail(state, model, task_.control, workspace);
         if (on_grid || last_) write_sample(state, detailed, on_grid);
@@ -174,23 +194,27 @@ ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
                      const ShearingOutput& output, Progress& progress)
 {
     state.strain = state.time = 0;
-    Workspace workspace;
+    Workspace workspace(task.solver);
     Recorder recorder(task, output);
     std::optional<JammingMonitor> monitor = monitor_of(task.control);
     ShearingResult result;
+    bool jammed = false;
     try {
         for (;; ++result.steps) {
-            const Evaluation evaluation = recorder.record(state, model, workspace);
+            const auto recorded = recorder.record(state, model, workspace);
             if (recorder.last()) break;
-            if (monitor && monitor->observe(state, evaluation)) {
+            if (jammed) {
                 recorder.record_end(state, model, workspace);
                 result.outcome = Outcome::jammed;
                 break;
             }
+            const Evaluation moved =
+                advance(state, model, task.control, task.stepping, {recorder.target(), task.time},
+                        workspace, recorded ? &*recorded : nullptr);
+            result.solver.add(moved.solve);
+            jammed = monitor && monitor->observe(state, moved);
             progress.update(std::max(state.strain / task.strain, state.time / task.time),
-                            details_text(state, evaluation.shear_rate));
-            const StepLimit limit{recorder.target(), task.time};
-            advance(state, model, task.control, task.stepping, limit, workspace, &evaluation);
+                            details_text(state, moved.shear_rate));
         }
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::numerics) throw;
@@ -209,6 +233,9 @@ nlohmann::ordered_json shearing_json(const State& state, const ShearingResult& r
     json["strain"] = state.strain;
     json["time"] = state.time;
     json["steps"] = result.steps;
+    json["solver"] = {{"mean_iterations", result.solver.iterations / std::max(1L, result.steps)},
+                      {"largest_residual", result.solver.largest_residual},
+                      {"fall_backs", result.solver.fall_backs}};
     if (const auto& window = result.window)
         json["jamming_window"] = {{"duration", window->duration},
                                   {"strain_gain", window->strain_gain},

@@ -9,15 +9,28 @@
 #include "engine/step.h"
 #include "workflows/step.h"
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 
 namespace sigmaflow::workflows {
 
+struct ShearingTask {
+    Control control;
+    Stepping stepping;
+    SolverSettings solver;
+    double strain = 0;           // the end [-]
+    double time = 0;             // at the latest [1/rate0]
+    double series_interval = 0;  // [-]
+    double frame_interval = 0;   // [-]; 0: only the last frame
+};
+
 /// Parameters that every shearing step has.
 struct ShearingParameters {
     std::optional<double> stress, rate;
-    Stepping stepping;
+    Scheme scheme = Scheme::heun;
+    std::optional<double> displacement;
+    SolverSettings solver;
     double series_interval = 0.01;
     std::optional<double> maximum_time;
 
@@ -28,15 +41,7 @@ struct ShearingParameters {
     /// takes at a viscosity of 1e5 eta0 (stress control), or a little more than it takes (rate
     /// control).
     double time_limit(double strain) const;
-};
-
-struct ShearingTask {
-    Control control;
-    Stepping stepping;
-    double strain = 0;           // the end [-]
-    double time = 0;             // at the latest [1/rate0]
-    double series_interval = 0;  // [-]
-    double frame_interval = 0;   // [-]; 0: only the last frame
+    ShearingTask task(double strain, double frame_interval) const;
 };
 
 /// flowing: reached its strain; jammed: engine/jamming.h; undecided: ran out of time. A jammed
@@ -52,9 +57,24 @@ struct ShearingOutput {
     std::function<bool()> enough;  // asked after each sample; true ends the run
 };
 
+/// What the solver needed; direct solutions of outputs are not counted.
+struct SolverStatistics {
+    double iterations = 0;
+    double largest_residual = 0;
+    long fall_backs = 0;
+
+    void add(const SolveReport& report)
+    {
+        iterations += report.iterations;
+        largest_residual = std::max(largest_residual, report.residual);
+        fall_backs += report.fell_back;
+    }
+};
+
 struct ShearingResult {
     Outcome outcome = Outcome::undecided;
     long steps = 0;
+    SolverStatistics solver;
     std::optional<JammingWindow> window;  // the last complete one, under an imposed stress
 };
 

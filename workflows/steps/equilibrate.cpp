@@ -65,9 +65,8 @@ struct Equilibrate {
 
     void run(Context& context) const
     {
-        const Control control = shearing.rate ? Control(ImposedRate{*shearing.rate})
-                                              : Control(ImposedStress{*shearing.stress});
-        RunFiles files(context, control);
+        const ShearingTask task = shearing.task(maximum_strain, 0);
+        RunFiles files(context, task.control);
         bool stationary = false;
         double last_rate = 0;
         const ShearingOutput output{[&](const Sample& sample, bool on_grid) {
@@ -76,17 +75,11 @@ struct Equilibrate {
                                     },
                                     [&](const Frame& frame) { files.append(frame, false); },
                                     [&] { return stationary = is_stationary(files.series()); }};
-        const ShearingTask task{control,
-                                shearing.stepping,
-                                maximum_strain,
-                                shearing.time_limit(maximum_strain),
-                                shearing.series_interval,
-                                0};
         const ShearingResult result =
             shear(context.state, context.suspension.model, task, output, context.progress);
         Run& run = files.finish();
         run.jammed = result.outcome == Outcome::jammed;
-        context.results["control"] = control_json(control);
+        context.results["control"] = control_json(task.control);
         context.results.update(shearing_json(context.state, result));
         if (!run.jammed) context.results["outcome"] = stationary ? "stationary" : "not stationary";
         context.results["last_shear_rate"] = last_rate;

@@ -33,19 +33,13 @@ struct Shear {
 
     void run(Context& context) const
     {
-        const Control control = shearing.rate ? Control(ImposedRate{*shearing.rate})
-                                              : Control(ImposedStress{*shearing.stress});
+        const ShearingTask task = shearing.task(strain, frame_interval);
+        const Control& control = task.control;
         RunFiles files(context, control);
         const ShearingOutput output{
             [&](const Sample& sample, bool on_grid) { files.append(sample, on_grid); },
             [&](const Frame& frame) { files.append(frame, true); },
             {}};
-        const ShearingTask task{control,
-                                shearing.stepping,
-                                strain,
-                                shearing.time_limit(strain),
-                                shearing.series_interval,
-                                frame_interval};
         const ShearingResult result =
             shear(context.state, context.suspension.model, task, output, context.progress);
         Run& run = files.finish();
