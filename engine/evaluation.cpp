@@ -43,6 +43,11 @@ void SolutionHistory::remember(double at, const Velocities& v)
     solution[0] = v;
 }
 
+void recycle(Evaluation&& evaluation, Workspace& workspace)
+{
+    workspace.buffers().spare.push_back(std::move(evaluation));
+}
+
 bool uses_dashpot(const Model& m)
 {
     return m.contact_hydrodynamics == ContactHydrodynamics::dashpot;
@@ -113,23 +118,21 @@ PairState pair_state(const Pair& pair, const State& s, const Model& m, const Sti
 }
 
 // Forces of all touching pairs; a pair without memory starts with relaxed springs, sticking.
-std::vector<ContactLoad> contact_loads(const std::vector<PairState>& pairs, const State& s,
-                                       const Model& m, const Stiffness& k)
+void find_contact_loads(const State& s, const Stiffness& k, Evaluation& e)
 {
-    std::vector<ContactLoad> loads;
+    e.contacts.clear();
     auto memory = s.contacts.begin();
-    for (std::size_t index = 0; index < pairs.size(); ++index) {
-        const Pair& pair = pairs[index].pair;
+    for (std::size_t index = 0; index < e.pairs.size(); ++index) {
+        const Pair& pair = e.pairs[index].pair;
         if (!pair.touching()) continue;
         while (memory != s.contacts.end() &&
                (memory->i < pair.i || (memory->i == pair.i && memory->j < pair.j)))
             ++memory;
         const bool known = memory != s.contacts.end() && memory->i == pair.i && memory->j == pair.j;
-        loads.push_back(contact_load(pair, s.radius[pair.i], s.radius[pair.j],
-                                     known ? *memory : Contact{pair.i, pair.j}, m, k));
-        loads.back().pair = static_cast<int>(index);
+        e.contacts.push_back(contact_load(pair, s.radius[pair.i], s.radius[pair.j],
+                                          known ? *memory : Contact{pair.i, pair.j}, e.model, k));
+        e.contacts.back().pair = static_cast<int>(index);
     }
-    return loads;
 }
 
 BlockCoefficients scaled(const BlockCoefficients& c, const lubrication::GapFactors& f)
@@ -293,13 +296,17 @@ Evaluation prepare(const State& state, const Model& model, const Control& contro
 {
     update_neighbours(state, model, b);
     Evaluation e;
+    if (!b.spare.empty()) {
+        e = std::move(b.spare.back());
+        b.spare.pop_back();
+    }
     e.model = model;
     e.control = control;
     const Stiffness k = stiffness(model, control);
-    const std::vector<Pair> pairs = find_pairs(state, interaction_range(model), b.neighbours);
-    e.pairs.reserve(pairs.size());
-    for (const Pair& pair : pairs) e.pairs.push_back(pair_state(pair, state, model, k));
-    e.contacts = contact_loads(e.pairs, state, model, k);
+    find_pairs(state, interaction_range(model), b.neighbours, b.pairs);
+    e.pairs.clear();
+    for (const Pair& pair : b.pairs) e.pairs.push_back(pair_state(pair, state, model, k));
+    find_contact_loads(state, k, e);
     assemble_matrix(state, e, b);
     return e;
 }
@@ -329,11 +336,13 @@ Evaluation evaluate(const State& state, const Model& model, const Control& contr
     return e;
 }
 
-std::vector<Pair> touching_pairs(const State& state, const Model& model, Workspace& workspace)
+const std::vector<Pair>& touching_pairs(const State& state, const Model& model,
+                                        Workspace& workspace)
 {
     Workspace::Buffers& b = workspace.buffers();
     update_neighbours(state, model, b);
-    return find_pairs(state, 0, b.neighbours);
+    find_pairs(state, 0, b.neighbours, b.pairs);
+    return b.pairs;
 }
 
 Velocities total_velocities(const State& state, const Evaluation& e)

@@ -126,8 +126,12 @@ Evaluation evaluate_implicitly(const State& state, const Model& model, const Con
 DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
                                       const Control& control, Workspace& workspace);
 
-/// The touching pairs of a state, sorted by (i, j).
-std::vector<Pair> touching_pairs(const State& state, const Model& model, Workspace& workspace);
+/// Gives back the memory of an evaluation that is no longer needed, so that no step allocates.
+void recycle(Evaluation&& evaluation, Workspace& workspace);
+
+/// The touching pairs of a state, sorted by (i, j); valid until the workspace is used again.
+const std::vector<Pair>& touching_pairs(const State& state, const Model& model,
+                                        Workspace& workspace);
 
 /// U and Omega at the positions of the state.
 Velocities total_velocities(const State& state, const Evaluation& evaluation);

@@ -172,11 +172,10 @@ bool NeighbourList::covers(const State& state, double range) const
     return (1 + std::abs(strain)) * now <= reach_ + skin_;
 }
 
-std::vector<Pair> find_pairs(const State& s, double range, const NeighbourList& list)
+void find_pairs(const State& s, double range, const NeighbourList& list, std::vector<Pair>& pairs)
 {
-    std::vector<Pair> pairs;
+    pairs.clear();
     const auto& candidates = list.candidates();
-    pairs.reserve(range > 0 ? candidates.size() : s.radius.size() * 4);
     const Images images(s.box);
     for (std::size_t k = 0; k < candidates.size(); ++k) {
         const auto [i, j] = candidates[k];
@@ -195,6 +194,12 @@ std::vector<Pair> find_pairs(const State& s, double range, const NeighbourList& 
             pairs.push_back(
                 {i, j, sep.image, static_cast<int>(k), sep.d, sep.d / r, r, r - sum, xi});
     }
+}
+
+std::vector<Pair> find_pairs(const State& state, double range, const NeighbourList& list)
+{
+    std::vector<Pair> pairs;
+    find_pairs(state, range, list, pairs);
     return pairs;
 }
 

@@ -54,6 +54,9 @@ private:
 /// All pairs i < j closer than `cutoff(a_i + a_j)` = (a_i + a_j)(1 + range/2) + skin, sorted.
 std::vector<Candidate> close_pairs(const State& state, double range, double skin);
 
+/// Replaces the content of `pairs`.
+void find_pairs(const State& state, double range, const NeighbourList& list,
+                std::vector<Pair>& pairs);
 std::vector<Pair> find_pairs(const State& state, double range, const NeighbourList& list);
 
 }

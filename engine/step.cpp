@@ -101,9 +101,10 @@ void step(State& state, const Model& model, const Control& control, Scheme schem
     const double dt = stage_time(march, h, first.shear_rate);
     State next = moved(state, {{&first, &state, dt}}, workspace);
     if (scheme == Scheme::heun) {
-        const Evaluation second = evaluate(next, model, control, workspace);
+        Evaluation second = evaluate(next, model, control, workspace);
         const double dt2 = stage_time(march, h, second.shear_rate);
         next = moved(state, {{&first, &state, dt / 2}, {&second, &next, dt2 / 2}}, workspace);
+        recycle(std::move(second), workspace);
     }
     if (march == March::strain) next.strain = state.strain + h;
     wrap(next.box, next.position);
@@ -128,8 +129,7 @@ Evaluation implicit_step(State& state, const Model& model, const Control& contro
                          double strain_limit, Workspace& workspace)
 {
     const double ahead = (1 - std::sqrt(0.5)) * dt;
-    const Evaluation first =
-        evaluate_implicitly(state, model, control, {ahead, dt, nullptr}, workspace);
+    Evaluation first = evaluate_implicitly(state, model, control, {ahead, dt, nullptr}, workspace);
     State next = moved(state, {{&first, &state, dt}}, workspace);
     Evaluation second = evaluate_implicitly(next, model, control, {ahead, dt, &first}, workspace);
     const double rate = (first.shear_rate + second.shear_rate) / 2;
@@ -138,6 +138,7 @@ Evaluation implicit_step(State& state, const Model& model, const Control& contro
     const double time = passes ? left / rate : dt;
     next = moved(state, {{&first, &state, time / 2}, {&second, &next, time / 2}}, workspace);
     if (passes) next.strain = strain_limit;
+    recycle(std::move(first), workspace);
     wrap(next.box, next.position);
     state = std::move(next);
     return second;

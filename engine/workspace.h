@@ -27,8 +27,10 @@ struct Workspace::Buffers {
     explicit Buffers(const SolverSettings& settings) : solver(settings) {}
 
     NeighbourList neighbours;
+    std::vector<Pair> pairs;
     std::vector<BlockCoefficients> coefficients;  // one per candidate
     ResistanceSolver solver;
+    std::vector<Evaluation> spare;  // of earlier steps: their memory is used again
     ResistanceMatrix matrix;
     std::array<SolutionHistory, 2> history;    // of both stages of a step
     double last_rate = 0;                      // of the last solution

@@ -208,13 +208,14 @@ ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
                 result.outcome = Outcome::jammed;
                 break;
             }
-            const Evaluation moved =
+            Evaluation moved =
                 advance(state, model, task.control, task.stepping, {recorder.target(), task.time},
                         workspace, recorded ? &*recorded : nullptr);
             result.solver.add(moved.solve);
             jammed = monitor && monitor->observe(state, moved);
             progress.update(std::max(state.strain / task.strain, state.time / task.time),
                             details_text(state, moved.shear_rate));
+            recycle(std::move(moved), workspace);
         }
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::numerics) throw;

@@ -78,10 +78,11 @@ void measure(const Options& o, const Model& m, State s, const std::string& name)
     long iterations = 0, fallbacks = 0, steps = 0;
     double residual = 0;
     for (; steps < o.steps && s.strain < strain + o.strain; ++steps) {
-        const Evaluation e = advance(s, m, control, stepping, {strain + o.strain}, workspace);
+        Evaluation e = advance(s, m, control, stepping, {strain + o.strain}, workspace);
         iterations += e.solve.iterations;
         fallbacks += e.solve.fell_back;
         residual = std::max(residual, e.solve.residual);
+        recycle(std::move(e), workspace);
     }
     const double spent = cpu_seconds() - start;
     const Sample last = make_sample(s, evaluate_in_detail(s, m, control, workspace));
