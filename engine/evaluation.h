@@ -109,8 +109,8 @@ private:
 Evaluation evaluate(const State& state, const Model& model, const Control& control,
                     Workspace& workspace);
 
-/// A stage of a linearly implicit step (step.h). The contact springs are taken at the positions
-/// that the stage itself reaches after the time `ahead`: each touching pair resists the relative
+/// A stage of a linearly implicit step (step.h). Contact springs and repulsion are taken at the
+/// positions that the stage itself reaches after the time `ahead`: each pair resists the relative
 /// motion of its surfaces with ahead * stiffness more. In the second stage, twice that resistance
 /// times the motion of the first one is added to the loads.
 struct ImplicitStage {

@@ -1,4 +1,5 @@
-// evaluate_implicitly: contact springs at the positions that the stage itself reaches.
+// evaluate_implicitly: contact springs and repulsion at the positions that the stage itself
+// reaches.
 //
 // A spring of stiffness k that follows a relative motion v for the time `ahead` changes its force
 // by
@@ -103,17 +104,25 @@ Evaluation evaluate_implicitly(const State& state, const Model& model, const Con
     const Estimate estimate = stage.earlier
                                   ? Estimate{stage.earlier->nonaffine, stage.earlier->shear_rate}
                                   : Estimate{history.guess(state.time), b.last_rate};
-    std::size_t block = 0;
-    for (const ContactLoad& c : e.contacts) {
-        const Pair& pair = e.pairs[c.pair].pair;
-        double factor = 1;
-        if (c.memory.sliding && !estimate.nonaffine.empty()) {
-            const PairVelocities v = moving(state, estimate.nonaffine, estimate.rate, pair);
-            factor =
-                sliding_factor(c, relative_motion(state, v, pair).slip, secant_steps * stage.step);
-        }
-        const BlockCoefficients r = spring_resistance(state, pair, k, stage.ahead, factor);
+    std::size_t block = 0, contact = 0;
+    for (const PairState& p : e.pairs) {
+        const Pair& pair = p.pair;
+        const ContactLoad* touch = pair.touching() ? &e.contacts[contact++] : nullptr;
+        if (p.factors.L == 0) continue;  // not in the matrix
         while (b.matrix.pairs[block].candidate != pair.candidate) ++block;
+        BlockCoefficients r{};
+        if (touch) {
+            double factor = 1;
+            if (touch->memory.sliding && !estimate.nonaffine.empty()) {
+                const PairVelocities v = moving(state, estimate.nonaffine, estimate.rate, pair);
+                factor = sliding_factor(*touch, relative_motion(state, v, pair).slip,
+                                        secant_steps * stage.step);
+            }
+            r = spring_resistance(state, pair, k, stage.ahead, factor);
+        } else {
+            r.xa = stage.ahead * p.repulsion / model.debye_length;
+        }
+        if (r.xa == 0 && r.ya == 0) continue;
         add_to_block(b.matrix, block, r);
         const AffineLoad affine = affine_load(state, pair, r);
         add(b.unit_load, pair, affine.load);
