@@ -45,7 +45,9 @@ void SolutionHistory::remember(double at, const Velocities& v)
 
 void recycle(Evaluation&& evaluation, Workspace& workspace)
 {
-    workspace.buffers().spare.push_back(std::move(evaluation));
+    // a step needs two; copies that callers made must not pile up
+    auto& spare = workspace.buffers().spare;
+    if (spare.size() < 4) spare.push_back(std::move(evaluation));
 }
 
 bool uses_dashpot(const Model& m)
@@ -302,6 +304,7 @@ Evaluation prepare(const State& state, const Model& model, const Control& contro
     }
     e.model = model;
     e.control = control;
+    e.solve = {};
     const Stiffness k = stiffness(model, control);
     find_pairs(state, interaction_range(model), b.neighbours, b.pairs);
     e.pairs.clear();

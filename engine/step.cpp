@@ -88,25 +88,23 @@ State moved(const State& start, const std::vector<Stage>& stages, Workspace& wor
     return result;
 }
 
-double stage_time(March march, double h, double rate)
-{
-    return march == March::strain ? h / rate : h;
-}
-
 }
 
 void step(State& state, const Model& model, const Control& control, Scheme scheme, March march,
           double h, const Evaluation& first, Workspace& workspace)
 {
-    const double dt = stage_time(march, h, first.shear_rate);
+    const double dt = march == March::strain ? h / first.shear_rate : h;
+    bool lands = march == March::strain;
     State next = moved(state, {{&first, &state, dt}}, workspace);
     if (scheme == Scheme::heun) {
         Evaluation second = evaluate(next, model, control, workspace);
-        const double dt2 = stage_time(march, h, second.shear_rate);
+        // a rate that collapses within the step would make the second stage endless
+        lands = lands && second.shear_rate > 0.25 * first.shear_rate;
+        const double dt2 = lands ? h / second.shear_rate : dt;
         next = moved(state, {{&first, &state, dt / 2}, {&second, &next, dt2 / 2}}, workspace);
         recycle(std::move(second), workspace);
     }
-    if (march == March::strain) next.strain = state.strain + h;
+    if (lands) next.strain = state.strain + h;
     wrap(next.box, next.position);
     state = std::move(next);
 }
@@ -152,10 +150,9 @@ double shortened(double step, double left)
     return left <= step ? left : left < 2 * step ? left / 2 : step;
 }
 
-constexpr double growth = 1.3;        // largest ratio of successive implicit steps
-constexpr double first_share = 0.05;  // of the displacement, in the first implicit step
-constexpr double accepted_excess =
-    2;  // a step that moves more than this many displacements is undone
+constexpr double growth = 1.3;         // largest ratio of successive implicit steps
+constexpr double first_share = 0.05;   // of the displacement, in the first implicit step
+constexpr double accepted_excess = 2;  // displacements; a step that moves more is undone
 
 Evaluation advance_implicitly(State& state, const Model& model, const Control& control,
                               const Stepping& stepping, const StepLimit& limit,
@@ -202,18 +199,10 @@ Evaluation advance(State& state, const Model& model, const Control& control,
     dt = shortened(dt, limit.time - state.time);
     const double left = limit.strain - state.strain, rate = first.shear_rate;
     if (rate * dt >= left) {
-        // strain marching lands exactly unless the rate changes much within the step
-        State landed = state;
-        step(landed, model, control, stepping.scheme, March::strain, left, first, workspace);
-        const double took = landed.time - state.time;
-        if (took > 0.5 * left / rate && took < 2 * left / rate) {
-            state = std::move(landed);
-            return first;
-        }
-        dt = left / rate;
-    } else if (rate > 0) {
-        dt = shortened(rate * dt, left) / rate;
+        step(state, model, control, stepping.scheme, March::strain, left, first, workspace);
+        return first;
     }
+    if (rate > 0) dt = shortened(rate * dt, left) / rate;
     step(state, model, control, stepping.scheme, March::time, dt, first, workspace);
     return first;
 }
