@@ -42,6 +42,7 @@ struct Cholesky::Impl {
     cholmod_factor* factor = nullptr;
     cholmod_dense *right = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
     Slots slots;
+    std::vector<DiagonalSlice<d8>> blocks;
     int n = 0;
 
     Impl()
@@ -159,18 +160,22 @@ void Cholesky::factorise(const ResistanceMatrix& matrix)
     Impl& s = *impl_;
     auto* value = static_cast<double*>(s.matrix->x);
     std::memset(value, 0, s.matrix->nzmax * sizeof(double));
+    const Slices& slices = *matrix.slices;
+    s.blocks.resize(slices.count + 1);
+    diagonal_blocks(matrix, {0, slices.count}, s.blocks.data());
     for (int i = 0; i < s.n; ++i) {
-        const Mat6 own = full(matrix.diagonal[i]);
+        const Mat6 own = diagonal_block(s.blocks.data(), slices.slot[i]);
         for (int c = 0; c < block; ++c)
             std::memcpy(value + s.slots.diagonal[i * block + c], own.data() + c * block + c,
                         (block - c) * sizeof(double));
     }
-    for (const PairBlock& pair : matrix.pairs) {
-        // the lower triangle holds rows of j and columns of i: the transposed block
-        const Mat6 lower = off_diagonal(pair).transpose();
+    for (std::size_t k = 0; k < slices.pair_of.size(); ++k) {
+        // the lower triangle holds rows of j and columns of i
+        const Mat6 between = off_diagonal_block(matrix, slices.pair_of[k]);
+        const Mat6 lower = slices.flipped[k] ? between : Mat6(between.transpose());
         for (int c = 0; c < block; ++c)
-            std::memcpy(value + s.slots.candidate[pair.candidate * block + c],
-                        lower.data() + c * block, block * sizeof(double));
+            std::memcpy(value + s.slots.candidate[k * block + c], lower.data() + c * block,
+                        block * sizeof(double));
     }
     const OneThread alone;
     const int good = cholmod_factorize(s.matrix, s.factor, &s.common);

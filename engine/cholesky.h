@@ -22,13 +22,13 @@ public:
     Cholesky(Cholesky&&) noexcept;
     Cholesky& operator=(Cholesky&&) noexcept;
 
-    /// Sparsity pattern for n particles; pair blocks of a matrix refer to these candidates.
+    /// Sparsity pattern for n particles; the pairs of a matrix are these candidates.
     void set_pattern(int n, const std::vector<Candidate>& candidates);
 
-    /// Numerical factorisation; PairBlock::candidate indexes the pattern.
+    /// Numerical factorisation.
     void factorise(const ResistanceMatrix& matrix);
 
-    /// Solves for several right-hand sides at once; each [n].
+    /// Solves for several right-hand sides at once, with the last factor; each [n].
     void solve(const std::vector<const Velocities*>& right_hand_sides,
                const std::vector<Velocities*>& solutions);
 

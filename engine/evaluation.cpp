@@ -17,17 +17,16 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-Velocities SolutionHistory::guess(double at) const
+void SolutionHistory::guess(double at, Velocities& v) const
 {
-    if (known == 0) return {};
+    v.clear();
+    if (known == 0) return;
+    v = solution[0];
     const double interval = time[0] - time[1], ahead = at - time[0];
     // beyond a few intervals a straight line is worse than the last value
-    if (known == 1 || ahead == 0 || !(std::abs(ahead) < 4 * std::abs(interval))) return solution[0];
+    if (known == 1 || ahead == 0 || !(std::abs(ahead) < 4 * std::abs(interval))) return;
     const double weight = ahead / interval;
-    Velocities v(solution[0].size());
-    for (std::size_t i = 0; i < v.size(); ++i)
-        v[i] = solution[0][i] + weight * (solution[0][i] - solution[1][i]);
-    return v;
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] += weight * (solution[0][i] - solution[1][i]);
 }
 
 void SolutionHistory::remember(double at, const Velocities& v)
@@ -92,55 +91,108 @@ double solvent_resistance(const State& s, const Model& m)
 
 namespace {
 
-void update_neighbours(const State& s, const Model& m, Workspace::Buffers& b)
+void make_pattern(const State& s, Workspace::Buffers& b)
 {
-    if (!b.neighbours.update(s, interaction_range(m))) return;
     const auto& candidates = b.neighbours.candidates();
     b.solver.set_pattern(s.size(), candidates);
-    b.coefficients.clear();
-    b.coefficients.reserve(candidates.size());
-    for (const auto [i, j] : candidates) {
-        const auto c = lubrication::pair_coefficients(s.radius[i], s.radius[j]);
-        b.coefficients.push_back({c.xa, c.ya, c.yb11, c.yb21, c.yc11, c.yc12, c.yc22});
-    }
+    b.slices = make_slices(s, candidates);
+    make_shapes(s, b.slices, b.table);
+    const std::size_t count = b.slices.count + 1;
+    b.matrix.slices = &b.slices;
+    b.matrix.pairs.assign(b.slices.groups() + 1, PairGroup{});
+    b.matrix.drag.resize(2 * count);
+    b.rows.assign(count * lanes, Row{});
+    b.moment.resize(count);
+    b.affine.resize(count);
+    b.unit_load.assign(count, Slice6{});
+    b.fixed_load.assign(count, Slice6{});
+    b.right.assign(count, Slice6{});
 }
 
-PairState pair_state(const Pair& pair, const State& s, const Model& m, const Stiffness& k)
+double* row_values(Workspace::Buffers& b)
+{
+    return b.rows.data()->v;
+}
+
+}
+
+void locate(const State& s, const Model& m, Workspace::Buffers& b)
+{
+    const double range = interaction_range(m);
+    const bool rebuilt = b.neighbours.update(s, range);
+    if (rebuilt) make_pattern(s, b);
+    if (!rebuilt && b.located && b.box.offset == s.box.offset && b.position == s.position) return;
+    b.located = false;
+    bool good = true;
+    with_team(b.threads, [&](const Team& team) {
+        const Range own = team.share(b.slices.count);
+        write_positions(s, b.slices, own, row_values(b));
+        if (team.rank == 0)  // the particle of unused lanes, where no other is
+            std::fill_n(row_values(b) + 4 * b.slices.slots(), 3, -s.box.length.x() / 3);
+        team.barrier();
+        const bool all = find_geometry(b.slices, s.box, row_values(b), own, b.table);
+        if (!all) {
+#pragma omp atomic write
+            good = false;
+        }
+    });
+    if (!good) find_pairs(s, range, b.neighbours);  // throws and says which centres coincide
+    b.touching.clear();
+    for (std::size_t k = 0; k < b.slices.pair_of.size(); ++k) {
+        const int pair = b.slices.pair_of[k];
+        if (b.table.geometry[pair / lanes].xi[pair % lanes] <= 0)
+            b.touching.push_back(static_cast<int>(k));
+    }
+    b.position = s.position;
+    b.box = s.box;
+    b.located = true;
+}
+
+Pair touching_pair(const State& s, const Workspace::Buffers& b, std::size_t k)
+{
+    const int candidate = b.touching[k];
+    const int pair = b.slices.pair_of[candidate], l = pair % lanes;
+    const PairGeometry& g = b.table.geometry[pair / lanes];
+    const double sign = b.slices.flipped[candidate] ? -1 : 1;
+    const auto [i, j] = b.neighbours.candidates()[candidate];
+    Pair p{i, j, static_cast<int>(sign * g.image[l]), {}, sign * Vec3(g.nx[l], g.ny[l], g.nz[l]),
+           g.distance[l], g.distance[l] - s.radius[i] - s.radius[j], g.xi[l]};
+    p.separation = p.distance * p.normal;
+    return p;
+}
+
+namespace {
+
+PairState pair_state(const Pair& pair, int contact, const State& s, const Model& m,
+                     const Stiffness& k)
 {
     PairState p{pair,
                 {0, 0},
                 repulsion(pair, s.radius[pair.i], s.radius[pair.j], m),
-                pair.touching() && uses_dashpot(m)};
+                contact,
+                contact >= 0 && uses_dashpot(m)};
     if (pair.xi < m.lubrication_range) {
         p.factors = lubrication::gap_factors(pair.xi, m.lubrication_delta);
-        if (pair.touching() && m.contact_relaxation_time > 0)
+        if (contact >= 0 && m.contact_relaxation_time > 0)
             p.factors.L = 4 * k.normal * m.contact_relaxation_time;
     }
     return p;
 }
 
-// Forces of all touching pairs; a pair without memory starts with relaxed springs, sticking.
-void find_contact_loads(const State& s, const Stiffness& k, Evaluation& e)
+// The contact of the state that each touching pair remembers; both are sorted by (i, j).
+void find_memories(const State& s, Workspace::Buffers& b)
 {
-    e.contacts.clear();
-    auto memory = s.contacts.begin();
-    for (std::size_t index = 0; index < e.pairs.size(); ++index) {
-        const Pair& pair = e.pairs[index].pair;
-        if (!pair.touching()) continue;
-        while (memory != s.contacts.end() &&
-               (memory->i < pair.i || (memory->i == pair.i && memory->j < pair.j)))
-            ++memory;
-        const bool known = memory != s.contacts.end() && memory->i == pair.i && memory->j == pair.j;
-        e.contacts.push_back(contact_load(pair, s.radius[pair.i], s.radius[pair.j],
-                                          known ? *memory : Contact{pair.i, pair.j}, e.model, k));
-        e.contacts.back().pair = static_cast<int>(index);
+    b.memory.clear();
+    std::size_t at = 0;
+    for (int k : b.touching) {
+        const auto [i, j] = b.neighbours.candidates()[k];
+        while (at < s.contacts.size() &&
+               (s.contacts[at].i < i || (s.contacts[at].i == i && s.contacts[at].j < j)))
+            ++at;
+        const bool known =
+            at < s.contacts.size() && s.contacts[at].i == i && s.contacts[at].j == j;
+        b.memory.push_back(known ? static_cast<int>(at) : -1);
     }
-}
-
-BlockCoefficients scaled(const BlockCoefficients& c, const lubrication::GapFactors& f)
-{
-    return {f.L * c.xa,   f.l * c.ya,   f.l * c.yb11, f.l * c.yb21,
-            f.l * c.yc11, f.l * c.yc12, f.l * c.yc22};
 }
 
 double shear_moment(const Vec3& d, const Vec3& force)
@@ -148,72 +200,163 @@ double shear_moment(const Vec3& d, const Vec3& force)
     return 0.5 * (d.x() * force.y() + d.y() * force.x());
 }
 
-void add_block(ResistanceMatrix& matrix, const Pair& pair, const BlockCoefficients& c)
+/// Adds to one vector of one pair in the table.
+void add_to(Triple<d8>& sum, int lane, const Vec3& v)
 {
-    const Vec3& n = pair.normal;
-    add_pair(matrix.diagonal[pair.i], n, c.xa, c.ya, c.yb11, c.yc11);
-    add_pair(matrix.diagonal[pair.j], n, c.xa, c.ya, -c.yb21, c.yc22);
-    matrix.pairs.push_back({pair.i, pair.j, pair.candidate, n, c.xa, c.ya, c.yb11, c.yb21, c.yc12});
+    sum.x[lane] += v.x();
+    sum.y[lane] += v.y();
+    sum.z[lane] += v.z();
 }
 
-void assemble_matrix(const State& s, const Evaluation& e, Workspace::Buffers& b)
+// A contact in the table: the first particle of the pair may be j.
+void add_contact(const State& s, const ContactLoad& c, int candidate, Workspace::Buffers& b)
 {
-    ResistanceMatrix& matrix = b.matrix;
-    matrix.diagonal.resize(s.size());
-    for (int i = 0; i < s.size(); ++i) {
-        const Vec6 own = drag(s, e.model, i);
-        matrix.diagonal[i] = {{own[0], own[1], own[2]}, {own[3], own[4], own[5]}, {}};
+    const int pair = b.slices.pair_of[candidate], lane = pair % lanes;
+    PairForce& f = b.table.force[pair / lanes];
+    const double sign = b.slices.flipped[candidate] ? -1 : 1;
+    const Vec3 lever = c.pair.normal.cross(c.friction);
+    add_to(f.force, lane, sign * c.force_on_i);
+    add_to(f.lever, lane, lever);
+    add_to(f.roll, lane, sign * (c.torque_on_i - s.radius[c.pair.i] * lever));
+}
+
+void fill_drag(const State& s, const Model& m, Workspace::Buffers& b)
+{
+    for (int slot = 0; slot < b.slices.slots(); ++slot) {
+        const int i = b.slices.particle[slot];
+        const Vec6 own = i < 0 ? Vec6(Vec6::Ones()) : drag(s, m, i);
+        b.matrix.drag[2 * (slot / lanes)].v[slot % lanes] = own[0];
+        b.matrix.drag[2 * (slot / lanes) + 1].v[slot % lanes] = own[3];
     }
-    matrix.pairs.clear();
-    for (const PairState& p : e.pairs) {
-        if (p.factors.L == 0) continue;  // repulsion alone
-        add_block(b.matrix, p.pair, scaled(b.coefficients[p.pair.candidate], p.factors));
-    }
 }
 
-}
+// Horizon of the secant stiffness of sliding contacts, in steps. Less brakes the sliding (it is the
+// first-order error of the scheme in the friction), more leaves the springs too stiff for the step.
+constexpr double secant_steps = 2;
 
-// An affine flow acts only through the relative velocity r n.grad U, so that the sums over the
-// resistance functions G, H, M that stress control needs are multiples of A and B (identities of
-// the functions of Jeffrey & Onishi and Jeffrey, tested): Ehat:R_SE:Ehat = s^2 XA (n.e)^2 + s^2 YA
-// (e.e - (n.e)^2).
-AffineLoad affine_load(const State& s, const Pair& pair, const BlockCoefficients& c)
+// A sliding contact resists further sliding by its limit, not by its stiffness: the slope of the
+// secant of its force over the coming steps relative to the stiffness.
+double sliding_factor(const ContactLoad& c, const Vec3& slip, double horizon)
 {
-    const Vec3& n = pair.normal;
-    const double sum = s.radius[pair.i] + s.radius[pair.j];
-    const Vec3 strain(0.5 * n.y(), 0.5 * n.x(), 0);
-    const double normal = n.x() * n.y();
-    const Vec3 tangential = strain - normal * n, twist = strain.cross(n);
-    const Vec3 force = sum * (c.xa * normal * n + c.ya * tangential);
-    return {{force, sum * c.yb11 * twist, -force, sum * c.yb21 * twist},
-            sum * sum * (c.xa * normal * normal + c.ya * tangential.squaredNorm())};
+    const double stretch = c.memory.spring.norm();
+    const double later = (c.memory.spring + horizon * slip).norm();
+    return later > stretch ? stretch / later : 1;
+}
+
+/// Velocities from which the slip of sliding contacts is estimated.
+struct Estimate {
+    const Velocities& nonaffine;
+    double rate;
+};
+
+// A spring of stiffness k that follows a relative motion v for the time `ahead` changes its force
+// by - ahead k v: the structure of a pair resistance with XA = ahead kn, YA = ahead kt.
+void add_springs(const State& s, const Stiffness& k, const ContactLoad& c, int candidate,
+                 const ImplicitStage& stage, const Estimate& estimate, Workspace::Buffers& b)
+{
+    double factor = 1;
+    if (c.memory.sliding && !estimate.nonaffine.empty()) {
+        const PairVelocities v = moving(s, estimate.nonaffine, estimate.rate, c.pair);
+        factor = sliding_factor(c, relative_motion(s, v, c.pair).slip, secant_steps * stage.step);
+    }
+    const double x = s.radius[c.pair.i], y = s.radius[c.pair.j];
+    const double scale = reference_force * stage.ahead * (x + y) / 2;
+    const double harmonic = 2 * x * y / (x + y);
+    const int pair = b.slices.pair_of[candidate], lane = pair % lanes;
+    PairSprings& spring = b.table.springs[pair / lanes];
+    spring.normal[lane] = scale * k.normal;
+    spring.shear[lane] = scale * k.tangential * factor;
+    spring.roll[lane] = scale * k.rolling * harmonic * harmonic;
+}
+
+}
+
+Evaluation prepare(const State& s, const Model& model, const Control& control,
+                   const ImplicitStage* stage, Workspace::Buffers& b)
+{
+    locate(s, model, b);
+    Evaluation e;
+    if (!b.spare.empty()) {
+        e = std::move(b.spare.back());
+        b.spare.pop_back();
+    }
+    e.model = model;
+    e.control = control;
+    e.solve = {};
+    e.pairs.clear();
+    const Stiffness k = stiffness(model, control);
+    find_memories(s, b);
+    e.contacts.resize(b.touching.size());
+    const bool second = stage && stage->earlier;
+    if (stage && !second) b.history[0].guess(s.time, b.guess);
+    const Estimate estimate = second ? Estimate{stage->earlier->nonaffine, stage->earlier->shear_rate}
+                                     : Estimate{b.guess, b.last_rate};
+    if (second) to_slices(stage->earlier->nonaffine, b.slices, b.right);
+    fill_drag(s, model, b);
+    with_team(b.threads, [&](const Team& team) {
+        const Range own = team.share(b.slices.count);
+        find_factors(b.slices, model, k, own, b.table, b.moment.data());
+        if (stage) find_repulsion_springs(b.slices, model, stage->ahead, own, b.table);
+        if (second) write_rows(b.right, own, row_values(b));
+        team.barrier();
+        const Range contacts = team.share(static_cast<int>(b.touching.size()));
+        for (int c = contacts.begin; c < contacts.end; ++c) {
+            const Pair pair = touching_pair(s, b, c);
+            e.contacts[c] =
+                contact_load(pair, s.radius[pair.i], s.radius[pair.j],
+                             b.memory[c] < 0 ? Contact{pair.i, pair.j} : s.contacts[b.memory[c]],
+                             model, k);
+            add_contact(s, e.contacts[c], b.touching[c], b);
+            if (stage) add_springs(s, k, e.contacts[c], b.touching[c], *stage, estimate, b);
+        }
+        team.barrier();
+        if (second)
+            add_earlier_motion(b.slices, row_values(b), stage->earlier->shear_rate, own, b.table,
+                               b.moment.data());
+        fill_matrix(b.slices, b.table, stage != nullptr, own, b.matrix);
+        team.barrier();
+        sum_loads(b.slices, b.table, b.matrix, !uses_dashpot(model), own,
+                  {b.unit_load, b.fixed_load, b.affine.data()});
+    });
+    return e;
+}
+
+void list_pairs(const State& s, Evaluation& e, Workspace& workspace)
+{
+    const Stiffness k = stiffness(e.model, e.control);
+    locate(s, e.model, workspace.buffers());
+    e.pairs.clear();
+    std::size_t c = 0;
+    for (const Pair& pair :
+         find_pairs(s, interaction_range(e.model), workspace.buffers().neighbours)) {
+        const bool touches = c < e.contacts.size() && e.contacts[c].pair.i == pair.i &&
+                             e.contacts[c].pair.j == pair.j;
+        e.pairs.push_back(pair_state(pair, touches ? static_cast<int>(c++) : -1, s, e.model, k));
+    }
 }
 
 Loads assemble_loads(const State& s, const Evaluation& e, Workspace::Buffers& b)
 {
-    b.unit_load.assign(s.size(), Vec6::Zero());
-    b.fixed_load.assign(s.size(), Vec6::Zero());
     Loads result;
-    result.affine = solvent_resistance(s, e.model);
-    for (const PairState& p : e.pairs) {
-        const Vec3& n = p.pair.normal;
-        if (p.repulsion != 0) {
-            const Vec3 force = -p.repulsion * n;
-            b.fixed_load[p.pair.i].head<3>() += force;
-            b.fixed_load[p.pair.j].head<3>() -= force;
-            result.first_moment += shear_moment(p.pair.separation, force);
-        }
-        if (p.dashpot) add(b.unit_load, p.pair, dashpot_unit_load(s, p));
-        if (p.dashpot || p.factors.L == 0) continue;
-        const AffineLoad affine =
-            affine_load(s, p.pair, scaled(b.coefficients[p.pair.candidate], p.factors));
-        add(b.unit_load, p.pair, affine.load);
-        result.affine += affine.stress;
+    d8 affine{}, moment{};
+    for (int k = 0; k < b.slices.count; ++k) {
+        affine += b.affine[k].v;
+        moment += b.moment[k].v;
     }
-    for (const ContactLoad& c : e.contacts) {
-        const Pair& pair = e.pairs[c.pair].pair;
-        add(b.fixed_load, pair, {c.force_on_i, c.torque_on_i, -c.force_on_i, c.torque_on_j});
-        result.first_moment += shear_moment(pair.separation, c.force_on_i);
+    result.affine = solvent_resistance(s, e.model) + total(affine);
+    result.first_moment = total(moment);
+    for (const ContactLoad& c : e.contacts)
+        result.first_moment += shear_moment(c.pair.separation, c.force_on_i);
+    if (uses_dashpot(e.model)) {
+        const Stiffness k = stiffness(e.model, e.control);
+        Velocities loads(s.size(), Vec6::Zero());
+        for (std::size_t c = 0; c < e.contacts.size(); ++c)
+            add(loads, e.contacts[c].pair,
+                dashpot_unit_load(s, pair_state(e.contacts[c].pair, static_cast<int>(c), s,
+                                                e.model, k)));
+        to_slices(loads, b.slices, b.right);
+        for (int k2 = 0; k2 < b.slices.count; ++k2)
+            for (int c = 0; c < 6; ++c) b.unit_load[k2].c[c] += b.right[k2].c[c];
     }
     return result;
 }
@@ -221,11 +364,11 @@ Loads assemble_loads(const State& s, const Evaluation& e, Workspace::Buffers& b)
 namespace {
 
 // b = fixed + rate * unit
-Velocities combined(const Velocities& fixed, double rate, const Velocities& unit)
+void combine(const SlicedVector& fixed, double rate, const SlicedVector& unit, SlicedVector& sum)
 {
-    Velocities sum(fixed);
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += rate * unit[i];
-    return sum;
+    sum.resize(fixed.size());
+    for (std::size_t k = 0; k < sum.size(); ++k)
+        for (int c = 0; c < 6; ++c) sum[k].c[c] = fixed[k].c[c] + rate * unit[k].c[c];
 }
 
 // Volume times the shear stress x F of the dashpots at velocities V + rate U_inf.
@@ -244,30 +387,46 @@ double dashpot_moment(const State& s, const Evaluation& e, const Velocities& v, 
     return sum;
 }
 
-// Stress control with dashpots: a solution per unit rate and one that is free of the rate.
-void solve_twice(const State& s, const Loads& loads, Workspace::Buffers& b, Evaluation& e)
+double dot(const Velocities& u, const Velocities& v)
 {
-    e.solve = b.solver.solve({b.matrix}, b.unit_load, b.unit_velocity);
-    const SolveReport second = b.solver.solve({b.matrix}, b.fixed_load, b.fixed_velocity);
+    double sum = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) sum += u[i].dot(v[i]);
+    return sum;
+}
+
+// Stress control with dashpots: a solution per unit rate and one that is free of the rate.
+void solve_twice(const State& s, const Loads& loads, Workspace& workspace, Evaluation& e)
+{
+    Workspace::Buffers& b = workspace.buffers();
+    // here the error of the rate is linear in that of the solutions
+    constexpr double share = 0.1;
+    e.solve = b.solver.solve({b.matrix}, b.unit_load, b.solution, share);
+    const SolveReport second = b.solver.solve({b.matrix}, b.fixed_load, b.other_solution, share);
     e.solve.iterations += second.iterations;
     e.solve.residual = std::max(e.solve.residual, second.residual);
     e.solve.fell_back = e.solve.fell_back || second.fell_back;
+    Velocities unit_velocity, fixed_velocity;
+    from_slices(b.solution, b.slices, unit_velocity);
+    from_slices(b.other_solution, b.slices, fixed_velocity);
     if (!e.model.background_drag) {
-        remove_drift(s, b.unit_velocity);
-        remove_drift(s, b.fixed_velocity);
+        remove_drift(s, unit_velocity);
+        remove_drift(s, fixed_velocity);
     }
     // R_SU holds the pairs with a gap: their load per unit rate is that of the strain alone
+    list_pairs(s, e, workspace);
     Velocities strain_load(s.size(), Vec6::Zero());
     for (const PairState& p : e.pairs)
         if (!p.dashpot)
             add(strain_load, p.pair,
                 lubrication::strain_load(resistance(s, p), p.pair.normal, unit_strain_rate()));
     const double unit =
-        loads.affine - dot(strain_load, b.unit_velocity) + dashpot_moment(s, e, b.unit_velocity, 1);
-    const double fixed = loads.first_moment - dot(strain_load, b.fixed_velocity) +
-                         dashpot_moment(s, e, b.fixed_velocity, 0);
+        loads.affine - dot(strain_load, unit_velocity) + dashpot_moment(s, e, unit_velocity, 1);
+    const double fixed = loads.first_moment - dot(strain_load, fixed_velocity) +
+                         dashpot_moment(s, e, fixed_velocity, 0);
     e.shear_rate = (std::get<ImposedStress>(e.control).value * s.box.volume() - fixed) / unit;
-    e.nonaffine = combined(b.fixed_velocity, e.shear_rate, b.unit_velocity);
+    e.nonaffine = std::move(fixed_velocity);
+    for (std::size_t i = 0; i < e.nonaffine.size(); ++i)
+        e.nonaffine[i] += e.shear_rate * unit_velocity[i];
 }
 
 }
@@ -275,43 +434,26 @@ void solve_twice(const State& s, const Loads& loads, Workspace::Buffers& b, Eval
 void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
                    Workspace::Buffers& b, Evaluation& e)
 {
-    e.nonaffine = history.guess(s.time);
+    history.guess(s.time, b.guess);
+    if (b.guess.empty())
+        b.solution.assign(b.slices.count + 1, Slice6{});
+    else
+        to_slices(b.guess, b.slices, b.solution);
     if (const auto* rate = std::get_if<ImposedRate>(&e.control)) {
         e.shear_rate = rate->value;
-        e.solve = b.solver.solve({b.matrix}, combined(b.fixed_load, rate->value, b.unit_load),
-                                 e.nonaffine);
+        combine(b.fixed_load, rate->value, b.unit_load, b.right);
+        e.solve = b.solver.solve({b.matrix}, b.right, b.solution);
     } else {
         const double free =
             std::get<ImposedStress>(e.control).value * s.box.volume() - loads.first_moment;
-        e.solve =
-            b.solver.solve({b.matrix, &b.unit_load, 1 / loads.affine},
-                           combined(b.fixed_load, free / loads.affine, b.unit_load), e.nonaffine);
-        e.shear_rate = (free + dot(b.unit_load, e.nonaffine)) / loads.affine;
+        combine(b.fixed_load, free / loads.affine, b.unit_load, b.right);
+        e.solve = b.solver.solve({b.matrix, &b.unit_load, 1 / loads.affine}, b.right, b.solution);
+        e.shear_rate = (free + dot(b.unit_load, b.solution)) / loads.affine;
     }
+    from_slices(b.solution, b.slices, e.nonaffine);
+    if (!e.model.background_drag) remove_drift(s, e.nonaffine);
     history.remember(s.time, e.nonaffine);
     b.last_rate = e.shear_rate;
-    if (!e.model.background_drag) remove_drift(s, e.nonaffine);
-}
-
-Evaluation prepare(const State& state, const Model& model, const Control& control,
-                   Workspace::Buffers& b)
-{
-    update_neighbours(state, model, b);
-    Evaluation e;
-    if (!b.spare.empty()) {
-        e = std::move(b.spare.back());
-        b.spare.pop_back();
-    }
-    e.model = model;
-    e.control = control;
-    e.solve = {};
-    const Stiffness k = stiffness(model, control);
-    find_pairs(state, interaction_range(model), b.neighbours, b.pairs);
-    e.pairs.clear();
-    for (const Pair& pair : b.pairs) e.pairs.push_back(pair_state(pair, state, model, k));
-    find_contact_loads(state, k, e);
-    assemble_matrix(state, e, b);
-    return e;
 }
 
 void complete(const State& state, Evaluation& e)
@@ -322,30 +464,34 @@ void complete(const State& state, Evaluation& e)
     e.motion.clear();
     e.motion.reserve(e.contacts.size());
     for (const ContactLoad& c : e.contacts)
-        e.motion.push_back(relative_motion(state, e, e.pairs[c.pair].pair));
+        e.motion.push_back(relative_motion(state, e, c.pair));
 }
 
 Evaluation evaluate(const State& state, const Model& model, const Control& control,
                     Workspace& workspace)
 {
     Workspace::Buffers& b = workspace.buffers();
-    Evaluation e = prepare(state, model, control, b);
+    Evaluation e = prepare(state, model, control, nullptr, b);
     const Loads loads = assemble_loads(state, e, b);
     if (uses_dashpot(model) && std::holds_alternative<ImposedStress>(control))
-        solve_twice(state, loads, b, e);
+        solve_twice(state, loads, workspace, e);
     else
         solve_at_once(state, loads, b.history[0], b, e);
     complete(state, e);
     return e;
 }
 
-const std::vector<Pair>& touching_pairs(const State& state, const Model& model,
-                                        Workspace& workspace)
+Evaluation evaluate_implicitly(const State& state, const Model& model, const Control& control,
+                               const ImplicitStage& stage, Workspace& workspace)
 {
+    if (uses_dashpot(model))
+        throw Error(ErrorKind::input, "contact_hydrodynamics",
+                    "\"dashpot\" cannot be used with the scheme \"implicit\"");
     Workspace::Buffers& b = workspace.buffers();
-    update_neighbours(state, model, b);
-    find_pairs(state, 0, b.neighbours, b.pairs);
-    return b.pairs;
+    Evaluation e = prepare(state, model, control, &stage, b);
+    solve_at_once(state, assemble_loads(state, e, b), b.history[stage.earlier ? 1 : 0], b, e);
+    complete(state, e);
+    return e;
 }
 
 Velocities total_velocities(const State& state, const Evaluation& e)

@@ -39,6 +39,7 @@ struct PairState {
     Pair pair;
     lubrication::GapFactors factors{0, 0};  // zero beyond the lubrication range
     double repulsion = 0;                   // [eta0 rate0 a^2]
+    int contact = -1;      // index into the contacts of the evaluation, if the pair touches
     bool dashpot = false;  // touching, with the A, B, C block on the total velocities
 };
 
@@ -51,8 +52,8 @@ struct Evaluation {
     Model model;
     Control control;
     double shear_rate = 0;
-    std::vector<PairState> pairs;       // sorted by (i, j)
-    std::vector<ContactLoad> contacts;  // the touching ones, same order
+    std::vector<PairState> pairs;       // in range, sorted by (i, j); of detailed evaluations only
+    std::vector<ContactLoad> contacts;  // touching pairs, sorted by (i, j)
     std::vector<ContactMotion> motion;  // one per contact
     Velocities nonaffine;               // V = (U - U_inf, Omega - w_inf)
     SolveReport solve;
@@ -123,15 +124,14 @@ struct ImplicitStage {
 Evaluation evaluate_implicitly(const State& state, const Model& model, const Control& control,
                                const ImplicitStage& stage, Workspace& workspace);
 
+/// Adds the pairs in range to an evaluation of the same state.
+void list_pairs(const State& state, Evaluation& evaluation, Workspace& workspace);
+
 DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
                                       const Control& control, Workspace& workspace);
 
 /// Gives back the memory of an evaluation that is no longer needed, so that no step allocates.
 void recycle(Evaluation&& evaluation, Workspace& workspace);
-
-/// The touching pairs of a state, sorted by (i, j); valid until the workspace is used again.
-const std::vector<Pair>& touching_pairs(const State& state, const Model& model,
-                                        Workspace& workspace);
 
 /// U and Omega at the positions of the state.
 Velocities total_velocities(const State& state, const Evaluation& evaluation);

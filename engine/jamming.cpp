@@ -1,23 +1,26 @@
 #include "engine/jamming.h"
 
+#include "engine/workspace.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace sigmaflow {
 
-double force_residual(const State& state, const Evaluation& e)
+double force_residual(const State& state, const Model& model, const Control& control)
 {
-    std::vector<Vec3> pair_force(e.pairs.size());
-    for (std::size_t k = 0; k < e.pairs.size(); ++k)
-        pair_force[k] = -e.pairs[k].repulsion * e.pairs[k].pair.normal;
-    for (const ContactLoad& c : e.contacts) pair_force[c.pair] += c.force_on_i;
+    Workspace workspace;
+    Evaluation e = prepare(state, model, control, nullptr, workspace.buffers());
+    list_pairs(state, e, workspace);
     std::vector<Vec3> net(state.size(), Vec3::Zero());
     double largest = 0, residual = 0;
-    for (std::size_t k = 0; k < e.pairs.size(); ++k) {
-        net[e.pairs[k].pair.i] += pair_force[k];
-        net[e.pairs[k].pair.j] -= pair_force[k];
-        largest = std::max(largest, pair_force[k].norm());
+    for (const PairState& p : e.pairs) {
+        Vec3 force = -p.repulsion * p.pair.normal;
+        if (p.contact >= 0) force += e.contacts[p.contact].force_on_i;
+        net[p.pair.i] += force;
+        net[p.pair.j] -= force;
+        largest = std::max(largest, force.norm());
     }
     for (const Vec3& f : net) residual = std::max(residual, f.norm());
     return largest > 0 ? residual / largest : 0;
@@ -43,7 +46,7 @@ bool JammingMonitor::observe(const State& state, const Evaluation& e)
     window_.strain_gain = state.strain - start_strain_;
     window_.mean_viscosity = window_.strain_gain > 0 ? stress_ * elapsed / window_.strain_gain
                                                      : std::numeric_limits<double>::infinity();
-    window_.force_residual = force_residual(state, e);
+    window_.force_residual = force_residual(state, e.model, e.control);
     window_.jammed = window_.mean_viscosity > criterion_.viscosity &&
                      window_.force_residual < criterion_.residual;
     start_time_ = state.time;

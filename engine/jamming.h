@@ -20,7 +20,7 @@ struct JammingCriterion {
 
 /// Largest net force of contacts and repulsion on a particle over the largest pair force [-]; 0 if
 /// nothing acts.
-double force_residual(const State& state, const Evaluation& evaluation);
+double force_residual(const State& state, const Model& model, const Control& control);
 
 /// What the last complete window said.
 struct JammingWindow {

@@ -69,6 +69,7 @@ std::vector<PairForces> pair_forces(const State& state, const Evaluation& e)
     const Mat3 E = e.shear_rate * unit_strain_rate();
     for (const PairState& p : e.pairs) {
         PairForces f{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), -p.repulsion * p.pair.normal};
+        if (p.contact >= 0) f.contact = e.contacts[p.contact].force_on_i;
         const Vec6 &vi = e.nonaffine[p.pair.i], &vj = e.nonaffine[p.pair.j];
         if (p.dashpot)
             f.dashpot = dashpot_load(state, e, p).force_i;
@@ -78,7 +79,6 @@ std::vector<PairForces> pair_forces(const State& state, const Evaluation& e)
                 lubrication::resistance_times(resistance(state, p), p.pair.normal, vi, vj).force_i;
         forces.push_back(f);
     }
-    for (const ContactLoad& c : e.contacts) forces[c.pair].contact = c.force_on_i;
     return forces;
 }
 
@@ -93,7 +93,7 @@ PowerBalance power_balance(const State& state, const DetailedEvaluation& d)
         balance.drag += drag(state, e.model, i).dot(e.nonaffine[i].cwiseAbs2());
     for (const PairState& p : e.pairs) add_pair_power(state, e, p, balance);
     for (const ContactLoad& c : e.contacts) {
-        const Pair& pair = e.pairs[c.pair].pair;
+        const Pair& pair = c.pair;
         const PairLoad load{c.force_on_i, c.torque_on_i, -c.force_on_i, c.torque_on_j};
         balance.contact -= power(load, moving(state, e, pair));
         balance.torque_residual += spin_residual(load, pair, e.shear_rate);
@@ -192,7 +192,7 @@ Frame make_frame(const State& state, const DetailedEvaluation& d)
     }
     f.state.contacts.clear();
     for (const ContactLoad& c : e.contacts) {
-        const Pair& pair = e.pairs[c.pair].pair;
+        const Pair& pair = c.pair;
         ++f.contact_number[pair.i];
         ++f.contact_number[pair.j];
         f.state.contacts.push_back(c.memory);

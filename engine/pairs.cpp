@@ -192,7 +192,7 @@ void find_pairs(const State& s, double range, const NeighbourList& list, std::ve
         const double xi = 2 * (r - sum) / sum;
         if (xi < range)
             pairs.push_back(
-                {i, j, sep.image, static_cast<int>(k), sep.d, sep.d / r, r, r - sum, xi});
+                {i, j, sep.image, sep.d, sep.d / r, r, r - sum, xi});
     }
 }
 

@@ -20,7 +20,6 @@ namespace sigmaflow {
 struct Pair {
     int i, j;         // i < j
     int image;        // the image of j moves with U_j + image * shear_rate * Ly e_x
-    int candidate;    // index into the neighbour list
     Vec3 separation;  // from i to the image of j [a]
     Vec3 normal;
     double distance, gap;  // [a]

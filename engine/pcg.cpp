@@ -4,398 +4,572 @@
 #include <cmath>
 #include <utility>
 
-// Hot loops are compiled for several instruction sets; the processor chooses at start.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define SIGMAFLOW_HOT __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define SIGMAFLOW_HOT
-#endif
-
-#define SIGMAFLOW_INLINE __attribute__((always_inline)) inline
-
 namespace sigmaflow {
 
 namespace {
 
 constexpr int factor_lifetime = 10;  // solves; the factor hardly ages within so few steps
 constexpr int most_iterations = 2000;
+constexpr int most_corrections = 40;
+constexpr double narrow_reduction = 1e-4;  // of the residual, by one correction in single precision
+constexpr double margin = 0.8;     // of the goal: what a correction aims at
+constexpr double least_pivot = 1e-12;  // relative; less is rounding
+constexpr double least_drag = 0.02;    // single precision cannot resolve less [eta0 a, eta0 a^3]
 
-using v4 = double __attribute__((vector_size(32)));
-
-SIGMAFLOW_INLINE v4 read(const double* p)
-{
-    return *reinterpret_cast<const v4*>(p);
-}
-
-SIGMAFLOW_INLINE void write(double* p, const v4& value)
-{
-    *reinterpret_cast<v4*>(p) = value;
-}
-
-SIGMAFLOW_INLINE v4 spread(double x)
-{
-    return v4{x, x, x, x};
-}
-
-SIGMAFLOW_INLINE double total(const v4& x)
-{
-    return (x[0] + x[2]) + (x[1] + x[3]);
-}
-
-/// One vector quantity of four particles.
-struct Four {
-    v4 x, y, z;
+template <class V>
+struct Motion {
+    Triple<V> u, w;
 };
 
-// (x, y, z, 0) of four particles from and to lanes
-SIGMAFLOW_INLINE Four transposed(const double* a, const double* b, const double* c, const double* d)
+/// Position of (row, column), row <= column, in the packed upper triangle.
+constexpr int packed(int row, int column)
 {
-    const v4 va = read(a), vb = read(b), vc = read(c), vd = read(d);
-    const v4 xz_ab = __builtin_shufflevector(va, vb, 0, 4, 2, 6);
-    const v4 y_ab = __builtin_shufflevector(va, vb, 1, 5, 3, 7);
-    const v4 xz_cd = __builtin_shufflevector(vc, vd, 0, 4, 2, 6);
-    const v4 y_cd = __builtin_shufflevector(vc, vd, 1, 5, 3, 7);
-    return {__builtin_shufflevector(xz_ab, xz_cd, 0, 1, 4, 5),
-            __builtin_shufflevector(y_ab, y_cd, 0, 1, 4, 5),
-            __builtin_shufflevector(xz_ab, xz_cd, 2, 3, 6, 7)};
+    return row * 6 - row * (row - 1) / 2 + column - row;
 }
 
-SIGMAFLOW_INLINE void subtract_transposed(const Four& f, double* a, double* b, double* c, double* d)
+template <class V>
+SIGMAFLOW_INLINE void symmetric_times(const V* B, const V* x, V* y)
 {
-    const v4 zero = spread(0);
-    const v4 xy_even = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);
-    const v4 xy_odd = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
-    const v4 z_even = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);
-    const v4 z_odd = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
-    write(a, read(a) - __builtin_shufflevector(xy_even, z_even, 0, 1, 4, 5));
-    write(b, read(b) - __builtin_shufflevector(xy_odd, z_odd, 0, 1, 4, 5));
-    write(c, read(c) - __builtin_shufflevector(xy_even, z_even, 2, 3, 6, 7));
-    write(d, read(d) - __builtin_shufflevector(xy_odd, z_odd, 2, 3, 6, 7));
+    for (int r = 0; r < 6; ++r) {
+        V sum = B[packed(r, r)] * x[r];
+        for (int c = 0; c < 6; ++c)
+            if (c != r) sum += B[c > r ? packed(r, c) : packed(c, r)] * x[c];
+        y[r] = sum;
+    }
 }
 
-// (sum of the lanes of x, of y, of z, 0)
-SIGMAFLOW_INLINE v4 lane_sums(const Four& f)
+template <class V>
+SIGMAFLOW_INLINE void diagonal_times(const DiagonalSlice<V>& b, const V* v, V* y)
 {
-    const v4 zero = spread(0);
-    const v4 xy_even = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);
-    const v4 xy_odd = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
-    const v4 z_even = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);
-    const v4 z_odd = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
-    const v4 xy = xy_even + xy_odd, z = z_even + z_odd;
-    return __builtin_shufflevector(xy, z, 0, 1, 4, 5) + __builtin_shufflevector(xy, z, 2, 3, 6, 7);
+    const V *t = b.translation, *r = b.rotation, *c = b.coupling;
+    y[0] = t[0] * v[0] + t[3] * v[1] + t[4] * v[2] + c[1] * v[5] - c[2] * v[4];
+    y[1] = t[3] * v[0] + t[1] * v[1] + t[5] * v[2] + c[2] * v[3] - c[0] * v[5];
+    y[2] = t[4] * v[0] + t[5] * v[1] + t[2] * v[2] + c[0] * v[4] - c[1] * v[3];
+    y[3] = r[0] * v[3] + r[3] * v[4] + r[4] * v[5] - c[1] * v[2] + c[2] * v[1];
+    y[4] = r[3] * v[3] + r[1] * v[4] + r[5] * v[5] - c[2] * v[0] + c[0] * v[2];
+    y[5] = r[4] * v[3] + r[5] * v[4] + r[2] * v[5] - c[0] * v[1] + c[1] * v[0];
 }
 
-/// y = A_i v
-SIGMAFLOW_INLINE void diagonal_times(const DiagonalBlock& b, const double* v, double* y)
+SIGMAFLOW_INLINE double sum_of(const F8* partial, int count)
 {
-    const auto &t = b.translation, &r = b.rotation;
-    const auto& c = b.coupling;
-    y[0] = t[0] * v[0] + t[3] * v[1] + t[4] * v[2] + c[1] * v[6] - c[2] * v[5];
-    y[1] = t[3] * v[0] + t[1] * v[1] + t[5] * v[2] + c[2] * v[4] - c[0] * v[6];
-    y[2] = t[4] * v[0] + t[5] * v[1] + t[2] * v[2] + c[0] * v[5] - c[1] * v[4];
-    y[3] = 0;
-    y[4] = r[0] * v[4] + r[3] * v[5] + r[4] * v[6] - c[1] * v[2] + c[2] * v[1];
-    y[5] = r[3] * v[4] + r[1] * v[5] + r[5] * v[6] - c[2] * v[0] + c[0] * v[2];
-    y[6] = r[4] * v[4] + r[5] * v[5] + r[2] * v[6] - c[0] * v[1] + c[1] * v[0];
-    y[7] = 0;
+    d8 even{}, odd{};
+    int k = 0;
+    for (; k + 1 < count; k += 2) {
+        even += widened(partial[k].v);
+        odd += widened(partial[k + 1].v);
+    }
+    if (k < count) even += widened(partial[k].v);
+    return total(even + odd);
 }
 
+/// One symmetric block in lanes, as a full matrix.
+template <class V>
+struct Full {
+    V m[6][6];
+};
+
+SIGMAFLOW_INLINE double smallest(const d8& x)
+{
+    double least = x[0];
+    for (int l = 1; l < lanes; ++l) least = x[l] < least ? x[l] : least;
+    return least;
 }
 
-/// The loops over all particles of one solve; every vector has n + 1 particles, the last one zero.
-struct ConjugateGradients::Sweep {
-    int n;
-    const PairGroup* groups;
-    const int* first;
-    const DiagonalBlock* diagonal;
-    const Block* inverse;
-    const Lanes* f;  // null: no rank-one term
-    double weight;
-
-    /// y = D_i^-1 v
-    SIGMAFLOW_INLINE static void inverse_times(const Block& B, const double* v, double* y)
-    {
-        v4 upper = spread(0), lower = spread(0);
-        for (int c = 0; c < 6; ++c) {
-            const v4 value = spread(v[c < 3 ? c : c + 1]);
-            upper += value * read(B.column[c].v);
-            lower += value * read(B.column[c].v + 4);
+// Inverse of a symmetric positive definite block by L D L^T; worst: the smallest pivot relative to
+// the entry that it came from.
+template <class V>
+SIGMAFLOW_INLINE void invert(const Full<V>& A, V* inverse, V& worst)
+{
+    V L[6][6], d[6], id[6];
+    worst = spread<V>(1);
+    for (int j = 0; j < 6; ++j) {
+        V pivot = A.m[j][j];
+        for (int k = 0; k < j; ++k) pivot -= L[j][k] * L[j][k] * d[k];
+        const V relative = pivot / A.m[j][j];
+        worst = A.m[j][j] > 0 ? (relative < worst ? relative : worst) : spread<V>(-1);
+        d[j] = pivot;
+        id[j] = 1 / pivot;
+        for (int i = j + 1; i < 6; ++i) {
+            V sum = A.m[i][j];
+            for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k] * d[k];
+            L[i][j] = sum * id[j];
         }
-        write(y, upper);
-        write(y + 4, lower);
+    }
+    V X[6][6];  // L^-1
+    for (int c = 0; c < 6; ++c) {
+        for (int r = 0; r < 6; ++r) X[r][c] = spread<V>(r == c);
+        for (int r = c + 1; r < 6; ++r)
+            for (int k = c; k < r; ++k) X[r][c] -= L[r][k] * X[k][c];
+    }
+    for (int r = 0; r < 6; ++r)
+        for (int c = r; c < 6; ++c) {
+            V sum{};
+            for (int k = c; k < 6; ++k) sum += X[k][r] * X[k][c] * id[k];
+            inverse[packed(r, c)] = sum;
+        }
+}
+
+}
+
+/// The loops over slices of one correction.
+struct ConjugateGradients::Sweep {
+    const Slices* slices;
+    const OwnGroup *upper, *lower;
+    const DiagonalSlice<f8>* diagonal;
+    const Inverse* inverse;
+    const Slice* f;  // null: no rank-one term
+    float weight;
+    Slice *p, *r, *z, *t, *u, *q, *Dq, *x;
+    float* rows;
+    F8* partial;
+    F8* second_partial;
+
+    // load -= off-diagonal block times the velocities of the other particles
+    SIGMAFLOW_INLINE static void subtract_block(const OwnGroup& g, const float* rows,
+                                                const int* slot, Motion<f8>& load)
+    {
+        Motion<f8> v;
+        gather_rows(rows, slot, v.u, v.w);
+        const Triple<f8> n{g.nx, g.ny, g.nz};
+        const f8 nu = g.ya_minus_xa * dot(n, v.u), nw = g.yc * dot(n, v.w);
+        load.u = load.u - (nu * n - g.ya * v.u + g.force * cross(n, v.w));
+        load.w = load.w - (g.turn * cross(n, v.u) + g.yc * v.w - nw * n);
     }
 
-    /// load of the j -= L_ji v, v of i
-    SIGMAFLOW_INLINE static void subtract_lower(const PairGroup& g, const double* v, Lanes* load)
+    SIGMAFLOW_INLINE void subtract_upper(int k, Motion<f8>& load) const
     {
-        const v4 nx = read(g.nx), ny = read(g.ny), nz = read(g.nz), ya = read(g.ya),
-                 yc = read(g.yc);
-        const v4 bi = read(g.yb_i), bj = read(g.yb_j);
-        const v4 x = spread(v[0]), y = spread(v[1]), z = spread(v[2]);
-        const v4 p = spread(v[4]), q = spread(v[5]), r = spread(v[6]);
-        const v4 nu = read(g.ya_minus_xa) * (nx * x + ny * y + nz * z);
-        const v4 nw = yc * (nx * p + ny * q + nz * r);
-        const Four force{nu * nx - ya * x - bi * (ny * r - nz * q),
-                         nu * ny - ya * y - bi * (nz * p - nx * r),
-                         nu * nz - ya * z - bi * (nx * q - ny * p)};
-        const Four torque{yc * p - nw * nx - bj * (ny * z - nz * y),
-                          yc * q - nw * ny - bj * (nz * x - nx * z),
-                          yc * r - nw * nz - bj * (nx * y - ny * x)};
-        double *a = load[g.j[0]].v, *b = load[g.j[1]].v, *c = load[g.j[2]].v, *d = load[g.j[3]].v;
-        subtract_transposed(force, a, b, c, d);
-        subtract_transposed(torque, a + 4, b + 4, c + 4, d + 4);
+        for (int g = slices->upper[k]; g < slices->upper[k + 1]; ++g)
+            subtract_block(upper[g], rows, slices->second.data() + g * lanes, load);
     }
 
-    /// load of i -= sum over the j of L_ji^T v_j, lane by lane
-    SIGMAFLOW_INLINE static void subtract_upper(const PairGroup& g, const Lanes* v, Four& force,
-                                                Four& torque)
+    SIGMAFLOW_INLINE void subtract_lower(int k, Motion<f8>& load) const
     {
-        const v4 nx = read(g.nx), ny = read(g.ny), nz = read(g.nz), ya = read(g.ya),
-                 yc = read(g.yc);
-        const v4 bi = read(g.yb_i), bj = read(g.yb_j);
-        const double *a = v[g.j[0]].v, *b = v[g.j[1]].v, *c = v[g.j[2]].v, *d = v[g.j[3]].v;
-        const Four u = transposed(a, b, c, d);
-        const Four w = transposed(a + 4, b + 4, c + 4, d + 4);
-        const v4 nu = read(g.ya_minus_xa) * (nx * u.x + ny * u.y + nz * u.z);
-        const v4 nw = yc * (nx * w.x + ny * w.y + nz * w.z);
-        force.x -= nu * nx - ya * u.x + bj * (ny * w.z - nz * w.y);
-        force.y -= nu * ny - ya * u.y + bj * (nz * w.x - nx * w.z);
-        force.z -= nu * nz - ya * u.z + bj * (nx * w.y - ny * w.x);
-        torque.x -= yc * w.x - nw * nx + bi * (ny * u.z - nz * u.y);
-        torque.y -= yc * w.y - nw * ny + bi * (nz * u.x - nx * u.z);
-        torque.z -= yc * w.z - nw * nz + bi * (nx * u.y - ny * u.x);
+        for (int g = slices->lower[k]; g < slices->lower[k + 1]; ++g)
+            subtract_block(lower[g], rows, slices->lower_slot.data() + g * lanes, load);
     }
 
-    /// own -= sum over the pairs of i of L_ji^T v_j
-    SIGMAFLOW_INLINE void subtract_row(int i, const Lanes* v, double* own) const
+    /// y = D^-1 load, also as rows.
+    SIGMAFLOW_INLINE Motion<f8> divided(int k, const Motion<f8>& load) const
     {
-        const v4 zero = spread(0);
-        Four force{zero, zero, zero}, torque{zero, zero, zero};
-        for (int k = first[i]; k < first[i + 1]; ++k) subtract_upper(groups[k], v, force, torque);
-        write(own, read(own) + lane_sums(force));
-        write(own + 4, read(own + 4) + lane_sums(torque));
+        const f8 v[6] = {load.u.x, load.u.y, load.u.z, load.w.x, load.w.y, load.w.z};
+        f8 y[6];
+        symmetric_times(inverse[k].v, v, y);
+        const Motion<f8> result{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}};
+        sigmaflow::write_rows(result.u, result.w, rows + static_cast<std::size_t>(64) * k);
+        return result;
     }
 
-    /// r = b - (K - w f f^T) x
-    SIGMAFLOW_HOT void residual(const Lanes* b, const Lanes* x, Lanes* r) const
+    SIGMAFLOW_INLINE static Motion<f8> read(const Slice& s)
     {
-        double fx = 0;
-        if (f) fx = dot(f, x);
-        for (int i = 0; i < n; ++i) {
-            alignas(32) double y[8];
-            diagonal_times(diagonal[i], x[i].v, y);
-            for (int k = 0; k < 8; k += 4) {
-                v4 value = read(b[i].v + k) - read(y + k);
-                if (f) value += weight * fx * read(f[i].v + k);
-                write(r[i].v + k, value);
+        return {{s.c[0], s.c[1], s.c[2]}, {s.c[3], s.c[4], s.c[5]}};
+    }
+
+    SIGMAFLOW_INLINE static void write(const Motion<f8>& m, Slice& s)
+    {
+        s = {{m.u.x, m.u.y, m.u.z, m.w.x, m.w.y, m.w.z}};
+    }
+
+    /// y = (D + L)^-1 c, z = D y; partial sums of y.z.
+    SIGMAFLOW_HOT void forward(const Slice* c, Slice* y, Slice* Dy, Range range) const
+    {
+        for (int k = range.begin; k < range.end; ++k) {
+            Motion<f8> load = read(c[k]);
+            subtract_lower(k, load);
+            const Motion<f8> result = divided(k, load);
+            write(load, Dy[k]);
+            write(result, y[k]);
+            partial[k].v = dot(load.u, result.u) + dot(load.w, result.w);
+        }
+    }
+
+    /// p = z + beta p, t = (D + L)^-T p, u = D t; partial sums of f.t.
+    SIGMAFLOW_HOT void backward(float beta, Range range) const
+    {
+        for (int k = range.end - 1; k >= range.begin; --k) {
+            for (int c = 0; c < 6; ++c) p[k].c[c] = z[k].c[c] + beta * p[k].c[c];
+            Motion<f8> load = read(p[k]);
+            subtract_upper(k, load);
+            write(load, u[k]);
+            write(divided(k, load), t[k]);
+            if (f) {
+                f8 sum{};
+                for (int c = 0; c < 6; ++c) sum += f[k].c[c] * t[k].c[c];
+                partial[k].v = sum;
             }
         }
-        for (int i = 0; i < n; ++i) {
-            subtract_row(i, x, r[i].v);
-            for (int k = first[i]; k < first[i + 1]; ++k) subtract_lower(groups[k], x[i].v, r);
-        }
-    }
-
-    /// y = (D + L)^-1 c; c is overwritten by D y.
-    SIGMAFLOW_HOT void forward(Lanes* c, Lanes* y) const
-    {
-        for (int i = 0; i < n; ++i) {
-            inverse_times(inverse[i], c[i].v, y[i].v);
-            for (int k = first[i]; k < first[i + 1]; ++k) subtract_lower(groups[k], y[i].v, c);
-        }
-    }
-
-    /// t = (D + L)^-T p, u = D t; returns f.t.
-    SIGMAFLOW_HOT double backward(const Lanes* p, Lanes* u, Lanes* t) const
-    {
-        v4 ft = spread(0);
-        for (int i = n - 1; i >= 0; --i) {
-            write(u[i].v, read(p[i].v));
-            write(u[i].v + 4, read(p[i].v + 4));
-            subtract_row(i, t, u[i].v);
-            inverse_times(inverse[i], u[i].v, t[i].v);
-            if (f) ft += read(f[i].v) * read(t[i].v) + read(f[i].v + 4) * read(t[i].v + 4);
-        }
-        return total(ft);
     }
 
     /// q = t + (D + L)^-1 c, Dq = u + D (D + L)^-1 c, with c = p + (A_D - 2 D) t - w f (f.t);
-    /// returns p.q.
-    SIGMAFLOW_HOT double forward_of_product(const Lanes* p, const Lanes* t, const Lanes* u,
-                                            double ft, Lanes* c, Lanes* q, Lanes* Dq) const
+    /// partial sums of p.q.
+    SIGMAFLOW_HOT void forward_of_product(float weighted_ft, Range range) const
     {
-        for (int i = 0; i < n; ++i) {
-            alignas(32) double y[8];
-            diagonal_times(diagonal[i], t[i].v, y);
-            for (int k = 0; k < 8; k += 4) {
-                v4 value = read(p[i].v + k) + read(y + k) - 2 * read(u[i].v + k);
-                if (f) value -= weight * ft * read(f[i].v + k);
-                write(c[i].v + k, value);
+        for (int k = range.begin; k < range.end; ++k) {
+            f8 c[6];
+            diagonal_times(diagonal[k], t[k].c, c);
+            for (int e = 0; e < 6; ++e) {
+                c[e] += p[k].c[e] - 2 * u[k].c[e];
+                if (f) c[e] -= weighted_ft * f[k].c[e];
             }
+            Motion<f8> load{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
+            subtract_lower(k, load);
+            const Motion<f8> y = divided(k, load), forward_t = read(t[k]), forward_u = read(u[k]);
+            write({forward_t.u + y.u, forward_t.w + y.w}, q[k]);
+            write({forward_u.u + load.u, forward_u.w + load.w}, Dq[k]);
+            f8 sum{};
+            for (int e = 0; e < 6; ++e) sum += p[k].c[e] * q[k].c[e];
+            second_partial[k].v = sum;
         }
-        v4 pq = spread(0);
-        for (int i = 0; i < n; ++i) {
-            alignas(32) double y[8];
-            inverse_times(inverse[i], c[i].v, y);
-            for (int k = first[i]; k < first[i + 1]; ++k) subtract_lower(groups[k], y, c);
-            for (int k = 0; k < 8; k += 4) {
-                const v4 value = read(t[i].v + k) + read(y + k);
-                write(q[i].v + k, value);
-                write(Dq[i].v + k, read(u[i].v + k) + read(c[i].v + k));
-                pq += read(p[i].v + k) * value;
+    }
+
+    /// x += alpha t, r -= alpha q, z -= alpha Dq; partial sums of r.z.
+    SIGMAFLOW_HOT void update(float alpha, Range range) const
+    {
+        for (int k = range.begin; k < range.end; ++k) {
+            f8 sum{};
+            for (int c = 0; c < 6; ++c) {
+                x[k].c[c] += alpha * t[k].c[c];
+                r[k].c[c] -= alpha * q[k].c[c];
+                z[k].c[c] -= alpha * Dq[k].c[c];
+                sum += r[k].c[c] * z[k].c[c];
             }
+            partial[k].v = sum;
         }
-        return total(pq);
-    }
-
-    /// x += alpha t, r -= alpha q, z -= alpha Dq; returns r.z.
-    SIGMAFLOW_HOT double update(double alpha, const Lanes* t, const Lanes* q, const Lanes* Dq,
-                                Lanes* x, Lanes* r, Lanes* z) const
-    {
-        v4 rz = spread(0);
-        for (int i = 0; i < n; ++i)
-            for (int k = 0; k < 8; k += 4) {
-                write(x[i].v + k, read(x[i].v + k) + alpha * read(t[i].v + k));
-                const v4 new_r = read(r[i].v + k) - alpha * read(q[i].v + k);
-                const v4 new_z = read(z[i].v + k) - alpha * read(Dq[i].v + k);
-                write(r[i].v + k, new_r);
-                write(z[i].v + k, new_z);
-                rz += new_r * new_z;
-            }
-        return total(rz);
-    }
-
-    /// p = z + beta p
-    SIGMAFLOW_HOT void turn(double beta, const Lanes* z, Lanes* p) const
-    {
-        for (int i = 0; i < n; ++i)
-            for (int k = 0; k < 8; k += 4)
-                write(p[i].v + k, read(z[i].v + k) + beta * read(p[i].v + k));
-    }
-
-    SIGMAFLOW_HOT double dot(const Lanes* v, const Lanes* w) const
-    {
-        v4 sum = spread(0);
-        for (int i = 0; i < n; ++i)
-            sum += read(v[i].v) * read(w[i].v) + read(v[i].v + 4) * read(w[i].v + 4);
-        return total(sum);
     }
 };
 
-void ConjugateGradients::load(const ResistanceMatrix& m)
+void ConjugateGradients::resize(const Slices& s)
 {
-    n_ = m.size();
-    first_.resize(n_ + 1);
-    first_pair_.resize(n_ + 1);
-    groups_.clear();
-    std::size_t k = 0;
-    for (int i = 0; i < n_; ++i) {
-        first_[i] = static_cast<int>(groups_.size());
-        first_pair_[i] = static_cast<int>(k);
-        for (int lane = 0; k < m.pairs.size() && m.pairs[k].i == i; ++k, lane = (lane + 1) % 4) {
-            const PairBlock& p = m.pairs[k];
-            if (lane == 0) {
-                groups_.push_back({});
-                for (int& j : groups_.back().j) j = n_;
+    const std::size_t count = s.count + 1;
+    upper_.resize(s.groups());
+    lower_.resize(s.lower_pair.size() / lanes);
+    diagonal_.resize(count);
+    narrow_diagonal_.resize(count);
+    if (inverse_.size() != count) age_ = -1;
+    inverse_.resize(count);
+    wide_inverse_.resize(count);
+    work_.resize(10 * count);
+    rows_.resize(lanes * count);
+    double_rows_.resize(lanes * count);
+    std::fill(rows_.end() - lanes, rows_.end(), F8{});
+    std::fill(double_rows_.end() - lanes, double_rows_.end(), D8{});
+    partial_.resize(2 * count);
+    double_partial_.resize(2 * count);
+    residual_.resize(count);
+}
+
+SIGMAFLOW_HOT void ConjugateGradients::load(const ResistanceMatrix& m, Range range)
+{
+    const Slices& s = *m.slices;
+    for (int k = range.begin; k < range.end; ++k) {
+        for (int g = s.upper[k]; g < s.upper[k + 1]; ++g) {
+            const PairGroup& p = m.pairs[g];
+            upper_[g] = {narrowed(p.nx), narrowed(p.ny),   narrowed(p.nz),   narrowed(p.ya - p.xa),
+                         narrowed(p.ya), narrowed(p.yb21), narrowed(p.yb11), narrowed(p.yc12)};
+        }
+        for (int g = s.lower[k]; g < s.lower[k + 1]; ++g) {
+            OwnGroup& own = lower_[g];
+            for (int l = 0; l < lanes; ++l) {
+                const int pair = s.lower_pair[g * lanes + l];
+                const double* p =
+                    reinterpret_cast<const double*>(m.pairs.data() + pair / lanes) + pair % lanes;
+                own.nx[l] = static_cast<float>(-p[0 * lanes]);
+                own.ny[l] = static_cast<float>(-p[1 * lanes]);
+                own.nz[l] = static_cast<float>(-p[2 * lanes]);
+                own.ya_minus_xa[l] = static_cast<float>(p[4 * lanes] - p[3 * lanes]);
+                own.ya[l] = static_cast<float>(p[4 * lanes]);
+                own.force[l] = static_cast<float>(p[5 * lanes]);
+                own.turn[l] = static_cast<float>(p[6 * lanes]);
+                own.yc[l] = static_cast<float>(p[8 * lanes]);
             }
-            PairGroup& g = groups_.back();
-            g.nx[lane] = p.normal.x();
-            g.ny[lane] = p.normal.y();
-            g.nz[lane] = p.normal.z();
-            g.ya_minus_xa[lane] = p.ya - p.xa;
-            g.ya[lane] = p.ya;
-            g.yb_i[lane] = p.yb11;
-            g.yb_j[lane] = p.yb21;
-            g.yc[lane] = p.yc12;
-            g.j[lane] = p.j;
         }
     }
-    first_[n_] = static_cast<int>(groups_.size());
-    first_pair_[n_] = static_cast<int>(k);
-    diagonal_ = m.diagonal.data();
-}
-
-void ConjugateGradients::refresh_factor(const ResistanceMatrix& m)
-{
-    factor_.clear();
-    for (const DiagonalBlock& b : m.diagonal) factor_.push_back(full(b));
-    inverse_.resize(n_);
-    for (int i = 0; i < n_; ++i) {
-        Eigen::LLT<Mat6> llt(factor_[i]);
-        if (llt.info() != Eigen::Success) llt.compute(full(m.diagonal[i]));
-        const Mat6 solved = llt.solve(Mat6::Identity());
-        const Mat6 inverse = 0.5 * (solved + solved.transpose());
+    diagonal_blocks(m, range, diagonal_.data());
+    for (int k = range.begin; k < range.end; ++k) {
+        // refinement makes up for the drag that is added here
+        for (int c = 0; c < 3; ++c) {
+            diagonal_[k].translation[c] += larger(least_drag - m.drag[2 * k].v, d8{});
+            diagonal_[k].rotation[c] += larger(least_drag - m.drag[2 * k + 1].v, d8{});
+        }
         for (int c = 0; c < 6; ++c) {
-            const auto column = inverse.col(c);
-            inverse_[i].column[c] = {
-                {column[0], column[1], column[2], 0, column[3], column[4], column[5], 0}};
+            narrow_diagonal_[k].translation[c] = narrowed(diagonal_[k].translation[c]);
+            narrow_diagonal_[k].rotation[c] = narrowed(diagonal_[k].rotation[c]);
         }
-        for (int k = first_pair_[i]; k < first_pair_[i + 1]; ++k) {
-            const Mat6 L = off_diagonal(m.pairs[k]).transpose();
-            factor_[m.pairs[k].j].noalias() -= L * inverse * L.transpose();
-        }
+        for (int c = 0; c < 3; ++c)
+            narrow_diagonal_[k].coupling[c] = narrowed(diagonal_[k].coupling[c]);
     }
 }
 
-bool ConjugateGradients::solve(const ResistanceProblem& problem, const Velocities& b, Velocities& x,
-                               double tolerance, SolveReport& report)
+namespace {
+
+SIGMAFLOW_INLINE void fill(const DiagonalSlice<d8>& b, Full<d8>& A)
 {
-    load(problem.matrix);
-    if (age_ < 0 || age_ >= factor_lifetime || static_cast<int>(inverse_.size()) != n_) {
-        refresh_factor(problem.matrix);
-        age_ = 0;
+    const d8 *t = b.translation, *r = b.rotation, *c = b.coupling;
+    const d8 zero{};
+    const d8 rows[6][6] = {
+        {t[0], t[3], t[4], zero, -c[2], c[1]}, {t[3], t[1], t[5], c[2], zero, -c[0]},
+        {t[4], t[5], t[2], -c[1], c[0], zero}, {zero, c[2], -c[1], r[0], r[3], r[4]},
+        {-c[2], zero, c[0], r[3], r[1], r[5]}, {c[1], -c[0], zero, r[4], r[5], r[2]}};
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) A.m[i][j] = rows[i][j];
+}
+
+// the off-diagonal block times one column
+SIGMAFLOW_INLINE void block_times(const Triple<d8>& n, const d8& g, const d8& ya, const d8& force,
+                                  const d8& turn, const d8& yc, const d8* v, d8* y)
+{
+    const Triple<d8> u{v[0], v[1], v[2]}, w{v[3], v[4], v[5]};
+    const d8 nu = g * dot(n, u), nw = yc * dot(n, w);
+    const Triple<d8> F = nu * n - ya * u + force * cross(n, w);
+    const Triple<d8> T = turn * cross(n, u) + yc * w - nw * n;
+    y[0] = F.x;
+    y[1] = F.y;
+    y[2] = F.z;
+    y[3] = T.x;
+    y[4] = T.y;
+    y[5] = T.z;
+}
+
+}
+
+// D_i = A_i - sum over the earlier particles of L_ij D_j^-1 L_ij^T
+SIGMAFLOW_HOT void ConjugateGradients::factorise(const ResistanceMatrix& m, Range range)
+{
+    const Slices& s = *m.slices;
+    for (int k = range.begin; k < range.end; ++k) {
+        Full<d8> A;
+        fill(diagonal_[k], A);
+        for (int group = s.lower[k]; group < s.lower[k + 1]; ++group) {
+            const OwnGroup& own = lower_[group];
+            const Triple<d8> n{widened(own.nx), widened(own.ny), widened(own.nz)};
+            const d8 g = widened(own.ya_minus_xa), ya = widened(own.ya), force = widened(own.force),
+                     turn = widened(own.turn), yc = widened(own.yc);
+            d8 inverse[21];
+            for (int l = 0; l < lanes; ++l) {
+                const int slot = s.lower_slot[group * lanes + l];
+                const double* from =
+                    reinterpret_cast<const double*>(wide_inverse_.data() + slot / lanes) +
+                    slot % lanes;
+                for (int e = 0; e < 21; ++e) inverse[e][l] = from[e * lanes];
+            }
+            // S = L D^-1, column c = L (D^-1 e_c); then L S^T
+            d8 S[6][6];
+            for (int c = 0; c < 6; ++c) {
+                d8 column[6], y[6];
+                for (int r = 0; r < 6; ++r)
+                    column[r] = inverse[r <= c ? packed(r, c) : packed(c, r)];
+                block_times(n, g, ya, force, turn, yc, column, y);
+                for (int r = 0; r < 6; ++r) S[r][c] = y[r];
+            }
+            for (int r = 0; r < 6; ++r) {
+                d8 y[6];
+                block_times(n, g, ya, force, turn, yc, S[r], y);
+                for (int c = r; c < 6; ++c) A.m[c][r] -= y[c];
+            }
+        }
+        d8 worst;
+        invert(A, wide_inverse_[k].v, worst);
+        if (!(smallest(worst) > least_pivot)) {  // not positive definite: A_i alone
+            Full<d8> own;
+            fill(diagonal_[k], own);
+            d8 own_inverse[21], own_worst;
+            invert(own, own_inverse, own_worst);
+            if (!(smallest(own_worst) > 0)) {
+#pragma omp atomic write
+                indefinite_ = true;
+            }
+            for (int e = 0; e < 21; ++e)
+                wide_inverse_[k].v[e] =
+                    worst > least_pivot ? wide_inverse_[k].v[e] : own_inverse[e];
+        }
+        for (int e = 0; e < 21; ++e) inverse_[k].v[e] = narrowed(wide_inverse_[k].v[e]);
     }
+}
+
+bool ConjugateGradients::solve(const ResistanceProblem& problem, const SlicedVector& b,
+                               SlicedVector& x, double tolerance, int threads, SolveReport& report)
+{
+    resize(*problem.matrix.slices);
+    bool good = false;
+    indefinite_ = false;
+    if (age_ >= factor_lifetime) age_ = -1;
+    with_team(threads, [&](const Team& team) {
+        SolveReport own;
+        const bool reached = work(problem, b, x, tolerance, team, own);
+        if (team.rank == 0) {
+            good = reached;
+            report.iterations = own.iterations;
+            report.residual = own.residual;
+        }
+    });
     ++age_;
-    const std::size_t size = static_cast<std::size_t>(n_) + 1;
-    work_.assign(11 * size, Lanes{});
-    Lanes* next = work_.data();
-    const auto vector = [&next, size] { return std::exchange(next, next + size); };
-    Lanes *r = vector(), *z = vector(), *p = vector(), *t = vector(), *u = vector(), *q = vector(),
-          *Dq = vector(), *c = vector(), *right = vector(), *solution = vector(), *f = vector();
-    const auto spread_out = [](const Velocities& from, Lanes* to) {
-        for (std::size_t i = 0; i < from.size(); ++i)
-            to[i] = {
-                {from[i][0], from[i][1], from[i][2], 0, from[i][3], from[i][4], from[i][5], 0}};
-    };
-    spread_out(b, right);
-    spread_out(x, solution);
-    if (problem.direction) spread_out(*problem.direction, f);
-    const Sweep sweep{n_,
-                      groups_.data(),
-                      first_.data(),
-                      diagonal_,
-                      inverse_.data(),
-                      problem.direction ? f : nullptr,
-                      problem.weight};
+    return good;
+}
 
-    // size of the right-hand side in the norm of the preconditioner
-    std::copy(right, right + size, c);
-    sweep.forward(c, r);
-    const double goal = tolerance * tolerance * sweep.dot(r, c);
+namespace {
 
-    sweep.residual(right, solution, z);
-    sweep.forward(z, r);  // z = D r
-    double rho = sweep.dot(r, z);
-    std::copy(z, z + size, p);
-    report.iterations = 0;
-    while (rho > goal) {
-        if (report.iterations == most_iterations || !std::isfinite(rho)) return false;
-        const double ft = sweep.backward(p, u, t);
-        const double curvature = sweep.forward_of_product(p, t, u, ft, c, q, Dq);
-        if (!(curvature > 0)) return false;
-        const double next_rho = sweep.update(rho / curvature, t, q, Dq, solution, r, z);
-        sweep.turn(next_rho / rho, z, p);
-        rho = next_rho;
-        ++report.iterations;
+// partial sums of r.r, b.b
+SIGMAFLOW_HOT void square(const SlicedVector& v, Range range, D8* partial)
+{
+    for (int k = range.begin; k < range.end; ++k) {
+        d8 sum{};
+        for (int c = 0; c < 6; ++c) sum += v[k].c[c] * v[k].c[c];
+        partial[k].v = sum;
     }
-    sweep.residual(right, solution, z);
-    const double b2 = sweep.dot(right, right);
-    report.residual = b2 > 0 ? std::sqrt(sweep.dot(z, z) / b2) : 0;
-    for (std::size_t i = 0; i < x.size(); ++i)
-        x[i] << solution[i].v[0], solution[i].v[1], solution[i].v[2], solution[i].v[4],
-            solution[i].v[5], solution[i].v[6];
-    return true;
+}
+
+SIGMAFLOW_HOT void product(const SlicedVector& v, const SlicedVector& w, Range range, D8* partial)
+{
+    for (int k = range.begin; k < range.end; ++k) {
+        d8 sum{};
+        for (int c = 0; c < 6; ++c) sum += v[k].c[c] * w[k].c[c];
+        partial[k].v = sum;
+    }
+}
+
+double sum_of(const D8* partial, int count)
+{
+    d8 sum{};
+    for (int k = 0; k < count; ++k) sum += partial[k].v;
+    return total(sum);
+}
+
+}
+
+// Every member of the team goes through all of this and decides the same, from the same sums.
+bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVector& b,
+                              SlicedVector& x, double tolerance, const Team& team,
+                              SolveReport& report)
+{
+    const ResistanceMatrix& matrix = problem.matrix;
+    const Slices& s = *matrix.slices;
+    const std::size_t stride = s.count + 1;
+    const Range own = team.share(s.count);
+    // a phase in which slices depend on those of earlier colours
+    const auto by_colours = [&](bool forwards, const auto& phase) {
+        if (team.size == 1) {
+            phase(Range{0, s.count});
+            return;
+        }
+        const int colours = static_cast<int>(s.colour.size()) - 1;
+        for (int k = 0; k < colours; ++k) {
+            const int c = forwards ? k : colours - 1 - k;
+            phase(team.share(s.colour[c], s.colour[c + 1]));
+            team.barrier();
+        }
+    };
+
+    load(matrix, own);
+    team.barrier();
+    if (age_ < 0) {
+        by_colours(true, [&](Range range) { factorise(matrix, range); });
+        team.barrier();
+        if (team.rank == 0) age_ = 0;
+    }
+    if (indefinite_) return false;
+    Slice* next = work_.data();
+    const auto vector = [&] { return std::exchange(next, next + stride); };
+    Sweep sweep{&s,
+                upper_.data(),
+                lower_.data(),
+                narrow_diagonal_.data(),
+                inverse_.data(),
+                nullptr,
+                static_cast<float>(problem.weight),
+                nullptr,
+                nullptr,
+                nullptr,
+                nullptr,
+                nullptr,
+                nullptr,
+                nullptr,
+                nullptr,
+                reinterpret_cast<float*>(rows_.data()),
+                partial_.data(),
+                partial_.data() + stride};
+    for (Slice** v : {&sweep.p, &sweep.r, &sweep.z, &sweep.t, &sweep.u, &sweep.q, &sweep.Dq,
+                      &sweep.x})
+        *v = vector();
+    Slice* right = vector();
+    Slice* f = vector();
+    if (problem.direction) {
+        const SlicedVector& direction = *problem.direction;
+        for (int k = own.begin; k < own.end; ++k)
+            for (int c = 0; c < 6; ++c) f[k].c[c] = narrowed(direction[k].c[c]);
+        sweep.f = f;
+    }
+    double* rows = reinterpret_cast<double*>(double_rows_.data());
+    D8 *first_sum = double_partial_.data(), *second_sum = first_sum + stride;
+
+    // size of the right-hand side, and in the norm of the preconditioner
+    square(b, own, first_sum);
+    team.barrier();
+    const double b2 = sum_of(first_sum, s.count);
+    if (!(b2 > 0)) {
+        for (int k = own.begin; k < own.end; ++k) x[k] = Slice6{};
+        return std::isfinite(b2);
+    }
+    const auto narrow = [&](const SlicedVector& from, double size) {
+        for (int k = own.begin; k < own.end; ++k)
+            for (int c = 0; c < 6; ++c) right[k].c[c] = narrowed(from[k].c[c] / size);
+        team.barrier();
+        by_colours(true, [&](Range range) { sweep.forward(right, sweep.r, sweep.z, range); });
+        return sum_of(sweep.partial, s.count);
+    };
+    const double goal = tolerance * tolerance * narrow(b, std::sqrt(b2)) * b2;
+
+    double before = 0;
+    for (int correction = 0;; ++correction) {
+        team.barrier();
+        write_rows(x, own, rows);
+        if (problem.direction) product(*problem.direction, x, own, first_sum);
+        team.barrier();
+        subtract_product(matrix, x, rows, b, own, residual_);
+        if (problem.direction) {
+            const double fx = problem.weight * sum_of(first_sum, s.count);
+            for (int k = own.begin; k < own.end; ++k)
+                for (int c = 0; c < 6; ++c) residual_[k].c[c] += fx * (*problem.direction)[k].c[c];
+        }
+        square(residual_, own, second_sum);
+        team.barrier();
+        const double r2 = sum_of(second_sum, s.count);
+        report.residual = std::sqrt(r2 / b2);
+        if (!std::isfinite(r2)) return false;
+        if (r2 == 0) return true;
+        const double size = std::sqrt(r2);
+        const double start = narrow(residual_, size);
+        if (!(start >= 0) || !std::isfinite(start)) return false;
+        const double now = start * r2;
+        if (now <= goal) return true;
+        if (correction == most_corrections || (correction && now > 0.8 * before)) return false;
+        before = now;
+
+        for (int k = own.begin; k < own.end; ++k) sweep.p[k] = sweep.x[k] = Slice{};
+        const double enough =
+            std::max(margin * goal / r2, narrow_reduction * narrow_reduction * start);
+        double rho = start, beta = 0;
+        while (rho > enough) {
+            if (report.iterations == most_iterations) return false;
+            team.barrier();
+            by_colours(false,
+                       [&](Range range) { sweep.backward(static_cast<float>(beta), range); });
+            const double ft = sweep.f ? sum_of(sweep.partial, s.count) : 0;
+            by_colours(true, [&](Range range) {
+                sweep.forward_of_product(static_cast<float>(problem.weight * ft), range);
+            });
+            const double curvature = sum_of(sweep.second_partial, s.count);
+            if (!(curvature > 0) || !std::isfinite(curvature)) return false;
+            team.barrier();
+            sweep.update(static_cast<float>(rho / curvature), own);
+            team.barrier();
+            const double next_rho = sum_of(sweep.partial, s.count);
+            if (!std::isfinite(next_rho)) return false;
+            beta = next_rho / rho;
+            rho = next_rho;
+            ++report.iterations;
+        }
+        for (int k = own.begin; k < own.end; ++k)
+            for (int c = 0; c < 6; ++c) x[k].c[c] += size * widened(sweep.x[k].c[c]);
+    }
 }
 
 }

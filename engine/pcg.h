@@ -1,21 +1,24 @@
 // engine/pcg.h -- conjugate gradients for (K - w f f^T) x = b, K = L + A_D + L^T in 6x6 blocks.
 //
+// Iterative refinement: the residual is computed in double precision, and its correction in single
+// precision by conjugate gradients (Wilkinson, Rounding Errors in Algebraic Processes, 1963; mixed
+// precision: Carson & Higham, SIAM J. Sci. Comput. 40, A817, 2018), until the residual is small
+// enough: the result has the accuracy that is asked for, most of the work half the memory.
+//
 // Preconditioner M = (D + L) D^-1 (D + L)^T with the blocks D of the diagonal-based incomplete
 // factor,
 //   D_i = A_i - sum_{j<i} L_ij D_j^-1 L_ij^T   (Meijerink & van der Vorst, Math. Comp. 31, 148,
 //   1977),
 // applied in the form of Eisenstat (SIAM J. Sci. Stat. Comput. 2, 1, 1981): one backward and one
-// forward sweep per iteration, no separate product with K. Pairs stay compressed, four to a group,
-// so that a sweep works on four at once whatever vectors the processor has. D may belong to an
-// earlier matrix: any positive definite D gives a valid preconditioner. A block that is not
-// positive definite is replaced by A_i.
+// forward sweep per iteration, no separate product with K. The order is that of the slices: eight
+// particles at once, colour after colour. D may belong to an earlier matrix: any positive definite
+// D gives a valid preconditioner. A block that is not positive definite is replaced by A_i.
 //
 // Convergence: sqrt(r.M^-1 r) <= tolerance sqrt(b.M^-1 b).
 #pragma once
 #include "engine/resistance_matrix.h"
 #include "engine/solver.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace sigmaflow {
@@ -25,39 +28,48 @@ public:
     /// Forgets the incomplete factor: the next solve makes a new one.
     void forget() { age_ = -1; }
 
-    /// x: the guess on entry. Sets report.iterations; false if the tolerance was not reached.
-    bool solve(const ResistanceProblem& problem, const Velocities& b, Velocities& x,
-               double tolerance, SolveReport& report);
+    /// x: the guess on entry. Sets iterations and residual of the report; false if the tolerance
+    /// was not reached.
+    bool solve(const ResistanceProblem& problem, const SlicedVector& b, SlicedVector& x,
+               double tolerance, int threads, SolveReport& report);
 
 private:
-    /// Four pairs of one particle i, lane by lane; L_ji: rows of j, columns of i. Lanes that are
-    /// not used are zero and point to a particle that does not exist.
-    struct alignas(64) PairGroup {
-        double nx[4], ny[4], nz[4], ya_minus_xa[4], ya[4], yb_i[4], yb_j[4], yc[4];
-        int j[4];
+    /// Eight pairs as one particle sees them; the normal points to the other one.
+    ///   load on it = g (n.u) n - ya u + force n x w,  torque = turn n x u + yc (w - (n.w) n)
+    struct alignas(64) OwnGroup {
+        f8 nx, ny, nz, ya_minus_xa, ya, force, turn, yc;
     };
-    /// (x, y, z, 0) of the translation, then of the rotation.
-    struct alignas(64) Lanes {
-        double v[8];
+    struct alignas(64) Slice {
+        f8 c[6];
     };
-    /// Six columns of a symmetric block.
-    struct alignas(64) Block {
-        Lanes column[6];
+    /// Upper triangles of symmetric 6x6 blocks, row by row.
+    struct alignas(64) Inverse {
+        f8 v[21];
+    };
+    struct alignas(64) DoubleInverse {
+        d8 v[21];
     };
     struct Sweep;
 
-    void load(const ResistanceMatrix& matrix);
-    void refresh_factor(const ResistanceMatrix& matrix);
+    void resize(const Slices& slices);
+    void load(const ResistanceMatrix& matrix, Range range);
+    void factorise(const ResistanceMatrix& matrix, Range range);
+    bool work(const ResistanceProblem& problem, const SlicedVector& b, SlicedVector& x,
+              double tolerance, const Team& team, SolveReport& report);
 
-    int n_ = 0;
-    int age_ = -1;                   // solves since the factor was made; -1: there is none
-    std::vector<PairGroup> groups_;  // grouped by i
-    std::vector<int> first_;         // [n + 1]: first group of each particle
-    std::vector<int> first_pair_;    // [n + 1]: first pair of each particle in the matrix
-    const DiagonalBlock* diagonal_ = nullptr;  // A_i [n], of the matrix being solved
-    std::vector<Block> inverse_;               // D_i^-1 [n]
-    std::vector<Mat6> factor_;                 // D_i while the factor is made
-    std::vector<Lanes> work_;                  // vectors of n + 1 particles, the last one zero
+    bool indefinite_ = false;  // a diagonal block of the matrix is not positive definite
+    int age_ = -1;  // solves since the factor was made; -1: there is none
+    std::vector<OwnGroup> upper_, lower_;
+    std::vector<DiagonalSlice<d8>> diagonal_;
+    std::vector<DiagonalSlice<f8>> narrow_diagonal_;
+    std::vector<DoubleInverse> wide_inverse_;  // D^-1 while the factor is made
+    std::vector<Inverse> inverse_;             // D^-1
+    std::vector<Slice> work_;                  // vectors of one correction
+    std::vector<F8> rows_;                     // a row of eight floats per slot: t, y
+    std::vector<D8> double_rows_;              // a row of eight doubles per slot: x
+    std::vector<F8> partial_;                  // sums of the slices
+    std::vector<D8> double_partial_;
+    SlicedVector residual_;
 };
 
 }

@@ -1,92 +1,62 @@
-// engine/resistance_matrix.h -- R_FU as the particles see it: diagonal blocks and compressed pairs.
+// engine/resistance_matrix.h -- R_FU as the particles see it: the drag of each and compressed
+// pairs.
 //
-// All entries of a pair block are functions of the normal and a few scalars, so a pair needs 8
-// numbers and not 36. A contact spring treated implicitly has the same structure. Symmetric by
-// construction; positive definite if every drag is positive.
+// All entries of a pair block are functions of the normal and a few scalars, so a pair needs 10
+// numbers and not 78. A contact spring treated implicitly has the same structure. Symmetric by
+// construction; positive definite if every drag is positive. Particles and pairs are in the order
+// of the slices (engine/slices.h).
 #pragma once
+#include "engine/slices.h"
+#include "engine/team.h"
 #include "engine/types.h"
 
-#include <array>
 #include <vector>
 
 namespace sigmaflow {
 
-/// Off-diagonal block of pair (i, j): rows of i, columns of j. Signs as in pair_resistance.h.
-struct PairBlock {
-    int i, j;
-    int candidate;  // position in the sparsity pattern
-    Vec3 normal;
-    double xa, ya, yb11, yb21, yc12;
+/// Eight pairs; normal from the first to the second particle, scalars as in pair_resistance.h.
+struct alignas(64) PairGroup {
+    d8 nx, ny, nz, xa, ya, yb11, yb21, yc11, yc12, yc22;
 };
 
-/// Diagonal block of a particle: symmetric parts of translation and rotation, and their coupling,
-/// which is the cross product with one vector, because it is a sum of such products.
+/// The scalars of one pair.
+struct PairScalars {
+    double xa = 0, ya = 0, yb11 = 0, yb21 = 0, yc11 = 0, yc12 = 0, yc22 = 0;
+};
+
+/// Diagonal blocks of eight particles: symmetric parts of translation and rotation
+/// (xx, yy, zz, xy, xz, yz), and their coupling, which is the cross product with one vector,
+/// because it is a sum of such products.
 ///   force = translation U + coupling x Omega,  torque = -coupling x U + rotation Omega
-struct DiagonalBlock {
-    // xx, yy, zz, xy, xz, yz
-    std::array<double, 6> translation{}, rotation{};
-    std::array<double, 3> coupling{};
+template <class V>
+struct alignas(64) DiagonalSlice {
+    V translation[6], rotation[6], coupling[3];
 };
-
-/// Adds normal nn + shear P (translation), turn P (rotation), twist n (coupling), P = 1 - nn.
-inline void add_pair(DiagonalBlock& b, const Vec3& n, double normal, double shear, double twist,
-                     double turn)
-{
-    const double x = n.x(), y = n.y(), z = n.z(), difference = normal - shear;
-    const double products[6] = {x * x, y * y, z * z, x * y, x * z, y * z};
-    for (int k = 0; k < 6; ++k) {
-        b.translation[k] += difference * products[k];
-        b.rotation[k] -= turn * products[k];
-    }
-    for (int k = 0; k < 3; ++k) {
-        b.translation[k] += shear;
-        b.rotation[k] += turn;
-    }
-    b.coupling[0] += twist * x;
-    b.coupling[1] += twist * y;
-    b.coupling[2] += twist * z;
-}
-
-Mat6 full(const DiagonalBlock& block);
 
 struct ResistanceMatrix {
-    std::vector<DiagonalBlock> diagonal;  // [n]
-    std::vector<PairBlock> pairs;         // sorted by (i, j)
+    const Slices* slices = nullptr;
+    std::vector<D8> drag;           // [2 count]: translation, then rotation of every slice
+    std::vector<PairGroup> pairs;   // [groups + 1], the last one zero
 
-    int size() const { return static_cast<int>(diagonal.size()); }
+    int size() const { return slices->particles; }
 };
 
-/// Rows (F, T) of i, columns (U, Omega) of j.
-Mat6 off_diagonal(const PairBlock& pair);
+/// r = b - R v for the slices of a range, given the rows of v (8 doubles a slot, six of them used).
+void subtract_product(const ResistanceMatrix& matrix, const SlicedVector& v, const double* rows,
+                      const SlicedVector& b, Range range, SlicedVector& r);
 
-/// Block times the velocities of j: load on i.
-inline Vec6 times(const PairBlock& p, const Vec6& v)
-{
-    const Vec3 u = v.head<3>(), w = v.tail<3>();
-    Vec6 load;
-    load.head<3>() =
-        (p.ya - p.xa) * p.normal.dot(u) * p.normal - p.ya * u + p.yb21 * p.normal.cross(w);
-    load.tail<3>() = p.yb11 * p.normal.cross(u) + p.yc12 * (w - p.normal.dot(w) * p.normal);
-    return load;
-}
+/// Rows of eight doubles, (x y z 0, x y z 0), of the slices of a range.
+void write_rows(const SlicedVector& v, Range range, double* rows);
 
-/// Transposed block times the velocities of i: load on j.
-inline Vec6 transposed_times(const PairBlock& p, const Vec6& v)
-{
-    const Vec3 u = v.head<3>(), w = v.tail<3>();
-    Vec6 load;
-    load.head<3>() =
-        (p.ya - p.xa) * p.normal.dot(u) * p.normal - p.ya * u - p.yb11 * p.normal.cross(w);
-    load.tail<3>() = -p.yb21 * p.normal.cross(u) + p.yc12 * (w - p.normal.dot(w) * p.normal);
-    return load;
-}
+/// result = R . v, on one thread.
+void multiply(const ResistanceMatrix& matrix, const SlicedVector& v, SlicedVector& result);
 
-/// Velocity, then angular velocity (or force, then torque) of every particle [n].
-using Velocities = std::vector<Vec6>;
+/// Diagonal blocks of the slices of a range.
+void diagonal_blocks(const ResistanceMatrix& matrix, Range range, DiagonalSlice<d8>* blocks);
 
-/// result = R . v
-void multiply(const ResistanceMatrix& matrix, const Velocities& v, Velocities& result);
-
-double dot(const Velocities& u, const Velocities& v);
+/// Full blocks, for direct solvers and tests: of a slot, and of rows of the first, columns of the
+/// second particle of a pair.
+Mat6 diagonal_block(const DiagonalSlice<d8>* blocks, int slot);
+Mat6 off_diagonal_block(const ResistanceMatrix& matrix, int pair);
 
 }

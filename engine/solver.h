@@ -1,9 +1,12 @@
-// engine/solver.h -- the resistance problem (R - w f f^T) x = b, two ways behind one interface.
+// engine/solver.h -- the resistance problem (R - w f f^T) x = b, three ways behind one interface.
 //
 // R is sparse, symmetric and positive definite; the optional rank-one term comes from stress
 // control (evaluation.h).
-//   cholesky  factorises R anew (engine/cholesky.h); f by the Sherman-Morrison formula
-//   pcg       conjugate gradients, preconditioned by a block incomplete factor (engine/pcg.h)
+//   pcg              conjugate gradients, preconditioned by a block incomplete factor
+//                    (engine/pcg.h); the cost grows like n
+//   cholesky         factorises R anew (engine/cholesky.h); f by the Sherman-Morrison formula
+//   lagged_cholesky  conjugate gradients, preconditioned by the Cholesky factor of an earlier R,
+//                    which is made anew when it has aged
 // The true residual of every solve is computed and reported. An iteration that does not reach the
 // tolerance falls back to Cholesky; the report says so.
 // Errors: numerics (R not positive definite).
@@ -18,11 +21,12 @@
 
 namespace sigmaflow {
 
-enum class SolverKind { pcg, cholesky };
+enum class SolverKind { pcg, cholesky, lagged_cholesky };
 
 struct SolverSettings {
     SolverKind kind = SolverKind::pcg;
     double tolerance = 1e-5;  // of the residual, relative, in the norm of the preconditioner (0, 1)
+    int threads = 1;          // of evaluation and pcg; results do not depend on it [1, 256]
 };
 
 struct SolveReport {
@@ -34,7 +38,7 @@ struct SolveReport {
 /// R - weight direction direction^T
 struct ResistanceProblem {
     const ResistanceMatrix& matrix;
-    const Velocities* direction = nullptr;
+    const SlicedVector* direction = nullptr;
     double weight = 0;
 };
 
@@ -45,11 +49,13 @@ public:
     ResistanceSolver(ResistanceSolver&&) noexcept;
     ResistanceSolver& operator=(ResistanceSolver&&) noexcept;
 
-    /// Sparsity pattern for n particles; pair blocks of a matrix refer to these candidates.
+    /// Sparsity pattern for n particles; the slices of the matrices to come were made of these
+    /// candidates.
     void set_pattern(int n, const std::vector<Candidate>& candidates);
 
-    /// x: a guess on entry (any size: not used), the solution on return.
-    SolveReport solve(const ResistanceProblem& problem, const Velocities& b, Velocities& x);
+    /// x: a guess on entry (any size: not used), the solution on return. `share` of the tolerance.
+    SolveReport solve(const ResistanceProblem& problem, const SlicedVector& b, SlicedVector& x,
+                      double share = 1);
 
     /// Exact solutions for several right-hand sides at once, without a rank-one term.
     void solve_directly(const ResistanceMatrix& matrix, const std::vector<const Velocities*>& b,

@@ -4,7 +4,9 @@
 #include "engine/workspace.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 
 namespace sigmaflow {
 
@@ -40,23 +42,24 @@ int find_contact(const Evaluation& e, int i, int j, std::size_t& hint)
 
 // Springs of the pairs that touch at the new positions: carried from the first stage, stretched by
 // the weighted slip velocities, projected and limited by the friction law.
-std::vector<Contact> moved_contacts(const State& moved, const std::vector<Stage>& stages,
-                                    Workspace& workspace)
+void move_contacts(std::initializer_list<Stage> stages, State& moved, Workspace::Buffers& b)
 {
-    const Evaluation& first = *stages.front().evaluation;
+    const Evaluation& first = *stages.begin()->evaluation;
     const Stiffness k = stiffness(first.model, first.control);
-    std::vector<std::size_t> hints(stages.size(), 0);
-    std::vector<Contact> contacts;
-    for (const Pair& pair : touching_pairs(moved, first.model, workspace)) {
+    locate(moved, first.model, b);
+    std::array<std::size_t, 2> hints{};
+    moved.contacts.clear();
+    for (std::size_t touch = 0; touch < b.touching.size(); ++touch) {
+        const Pair pair = touching_pair(moved, b, touch);
         Contact memory{pair.i, pair.j};
-        for (std::size_t s = 0; s < stages.size(); ++s) {
-            const Evaluation& e = *stages[s].evaluation;
-            const int c = find_contact(e, pair.i, pair.j, hints[s]);
+        std::size_t* hint = hints.data();
+        for (const Stage& stage : stages) {
+            const Evaluation& e = *stage.evaluation;
+            const int c = find_contact(e, pair.i, pair.j, *hint++);
             if (c < 0) continue;
-            const Vec3& from = e.pairs[e.contacts[c].pair].pair.normal;
-            Vec3 spring = stages[s].dt * e.motion[c].slip,
-                 rolling = stages[s].dt * e.motion[c].roll;
-            if (s == 0) {
+            const Vec3& from = e.contacts[c].pair.normal;
+            Vec3 spring = stage.dt * e.motion[c].slip, rolling = stage.dt * e.motion[c].roll;
+            if (&stage == stages.begin()) {
                 spring += e.contacts[c].memory.spring;
                 rolling += e.contacts[c].memory.rolling;
                 memory.sliding = e.contacts[c].memory.sliding;
@@ -64,28 +67,31 @@ std::vector<Contact> moved_contacts(const State& moved, const std::vector<Stage>
             memory.spring += carried(spring, from, pair.normal);
             memory.rolling += carried(rolling, from, pair.normal);
         }
-        contacts.push_back(
+        moved.contacts.push_back(
             contact_load(pair, moved.radius[pair.i], moved.radius[pair.j], memory, first.model, k)
                 .memory);
     }
-    return contacts;
 }
 
-// `start` moved by the velocities of the stages; positions are not wrapped, so that every stage
-// sees the same images.
-State moved(const State& start, const std::vector<Stage>& stages, Workspace& workspace)
+// `start` moved by the velocities of the stages. The positions of a stage within a step are not
+// wrapped, so that every stage sees the same images; those at its end are.
+void move(const State& start, std::initializer_list<Stage> stages, bool wrapped, State& result,
+          Workspace::Buffers& b)
 {
-    State result = start;
+    result = start;
     for (const Stage& stage : stages) {
-        const Velocities v = total_velocities(*stage.state, *stage.evaluation);
-        for (int i = 0; i < start.size(); ++i) result.position[i] += stage.dt * v[i].head<3>();
-        const double strain = stage.evaluation->shear_rate * stage.dt;
+        const Evaluation& e = *stage.evaluation;
+        const double strain = e.shear_rate * stage.dt;
+        for (int i = 0; i < start.size(); ++i) {
+            result.position[i] += stage.dt * e.nonaffine[i].head<3>();
+            result.position[i].x() += strain * stage.state->position[i].y();
+        }
         result.box.offset += strain * start.box.length.y();
         result.strain += strain;
         result.time += stage.dt;
     }
-    result.contacts = moved_contacts(result, stages, workspace);
-    return result;
+    if (wrapped) wrap(result.box, result.position);
+    move_contacts(stages, result, b);
 }
 
 }
@@ -93,20 +99,23 @@ State moved(const State& start, const std::vector<Stage>& stages, Workspace& wor
 void step(State& state, const Model& model, const Control& control, Scheme scheme, March march,
           double h, const Evaluation& first, Workspace& workspace)
 {
+    Workspace::Buffers& b = workspace.buffers();
+    State &stage = b.moved[0], &next = b.moved[1];
     const double dt = march == March::strain ? h / first.shear_rate : h;
     bool lands = march == March::strain;
-    State next = moved(state, {{&first, &state, dt}}, workspace);
     if (scheme == Scheme::heun) {
-        Evaluation second = evaluate(next, model, control, workspace);
+        move(state, {{&first, &state, dt}}, false, stage, b);
+        Evaluation second = evaluate(stage, model, control, workspace);
         // a rate that collapses within the step would make the second stage endless
         lands = lands && second.shear_rate > 0.25 * first.shear_rate;
         const double dt2 = lands ? h / second.shear_rate : dt;
-        next = moved(state, {{&first, &state, dt / 2}, {&second, &next, dt2 / 2}}, workspace);
+        move(state, {{&first, &state, dt / 2}, {&second, &stage, dt2 / 2}}, true, next, b);
         recycle(std::move(second), workspace);
+    } else {
+        move(state, {{&first, &state, dt}}, true, next, b);
     }
     if (lands) next.strain = state.strain + h;
-    wrap(next.box, next.position);
-    state = std::move(next);
+    std::swap(state, next);
 }
 
 double displacement_time_step(const Evaluation& evaluation, double displacement)
@@ -126,19 +135,20 @@ double stable_time_step(const Evaluation& evaluation)
 Evaluation implicit_step(State& state, const Model& model, const Control& control, double dt,
                          double strain_limit, Workspace& workspace)
 {
+    Workspace::Buffers& b = workspace.buffers();
+    State &stage = b.moved[0], &next = b.moved[1];
     const double ahead = (1 - std::sqrt(0.5)) * dt;
     Evaluation first = evaluate_implicitly(state, model, control, {ahead, dt, nullptr}, workspace);
-    State next = moved(state, {{&first, &state, dt}}, workspace);
-    Evaluation second = evaluate_implicitly(next, model, control, {ahead, dt, &first}, workspace);
+    move(state, {{&first, &state, dt}}, false, stage, b);
+    Evaluation second = evaluate_implicitly(stage, model, control, {ahead, dt, &first}, workspace);
     const double rate = (first.shear_rate + second.shear_rate) / 2;
     const double left = strain_limit - state.strain;
     const bool passes = rate * dt > left && rate * dt * 0.9 < left;
     const double time = passes ? left / rate : dt;
-    next = moved(state, {{&first, &state, time / 2}, {&second, &next, time / 2}}, workspace);
+    move(state, {{&first, &state, time / 2}, {&second, &stage, time / 2}}, true, next, b);
     if (passes) next.strain = strain_limit;
     recycle(std::move(first), workspace);
-    wrap(next.box, next.position);
-    state = std::move(next);
+    std::swap(state, next);
     return second;
 }
 

@@ -28,7 +28,7 @@ Columns assemble_columns(const State& s, const Evaluation& e)
         add(loads[column_repulsion], p.pair, {repulsive, Vec3::Zero(), -repulsive, Vec3::Zero()});
     }
     for (const ContactLoad& c : e.contacts)
-        add(loads[column_contact], e.pairs[c.pair].pair,
+        add(loads[column_contact], c.pair,
             {c.force_on_i, c.torque_on_i, -c.force_on_i, c.torque_on_j});
     return loads;
 }
@@ -117,8 +117,8 @@ void visit_pair_stress(const State& s, const DetailedEvaluation& d, const Visit&
         visit(repulsion_RSU, pair, no_stresslet, stresslet(column_repulsion));
     }
     for (const ContactLoad& c : e.contacts)
-        visit(contact_xF, e.pairs[c.pair].pair, no_stresslet,
-              virial(s, e.pairs[c.pair].pair, c.force_on_i));
+        visit(contact_xF, c.pair, no_stresslet,
+              virial(s, c.pair, c.force_on_i));
 }
 
 // eqs. 2 and 3 of the paper
@@ -172,7 +172,8 @@ DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
 {
     Workspace::Buffers& b = workspace.buffers();
     DetailedEvaluation d;
-    d.evaluation = prepare(state, model, control, b);
+    d.evaluation = prepare(state, model, control, nullptr, b);
+    list_pairs(state, d.evaluation, workspace);
     solve_columns(state, assemble_columns(state, d.evaluation), b, d);
     find_rate_and_stress(state, d);
     superpose(state, d);

@@ -2,16 +2,13 @@
 // buffers.
 #pragma once
 #include "engine/evaluation.h"
+#include "engine/pair_table.h"
+#include "engine/slices.h"
 
 #include <array>
 #include <vector>
 
 namespace sigmaflow {
-
-/// Coefficients of a pair that R_FU needs, at L = l = 1 (pair_resistance.h).
-struct BlockCoefficients {
-    double xa, ya, yb11, yb21, yc11, yc12, yc22;
-};
 
 /// Solutions at the last two different times, for a guess linear in time.
 struct SolutionHistory {
@@ -19,23 +16,43 @@ struct SolutionHistory {
     std::array<double, 2> time{};  // newest first
     std::array<Velocities, 2> solution;
 
-    Velocities guess(double at) const;
+    void guess(double at, Velocities& v) const;
     void remember(double at, const Velocities& v);
 };
 
+/// Rows of eight doubles, aligned.
+struct alignas(64) Row {
+    double v[8];
+};
+
 struct Workspace::Buffers {
-    explicit Buffers(const SolverSettings& settings) : solver(settings) {}
+    explicit Buffers(const SolverSettings& settings) : solver(settings), threads(settings.threads)
+    {
+    }
 
     NeighbourList neighbours;
-    std::vector<Pair> pairs;
-    std::vector<BlockCoefficients> coefficients;  // one per candidate
-    ResistanceSolver solver;
-    std::vector<Evaluation> spare;  // of earlier steps: their memory is used again
+    Slices slices;
+    PairTable table;
     ResistanceMatrix matrix;
-    std::array<SolutionHistory, 2> history;    // of both stages of a step
-    double last_rate = 0;                      // of the last solution
-    Velocities unit_load, fixed_load;          // per unit rate, rate free
-    Velocities unit_velocity, fixed_velocity;  // of the dashpot variant
+    ResistanceSolver solver;
+    int threads;
+
+    // the configuration whose geometry the table holds
+    std::vector<Vec3> position;
+    Box box;
+    bool located = false;
+    std::vector<int> touching;  // candidates, ascending
+
+    std::vector<int> memory;                // contact of the state for each touching pair, or -1
+    std::vector<Row> rows;                  // of positions or velocities, one a slot
+    std::vector<D8> moment, affine;         // partial sums of the slices
+    SlicedVector unit_load, fixed_load;     // per unit rate, rate free
+    SlicedVector right, solution, other_solution;
+    Velocities guess;
+    std::vector<Evaluation> spare;          // of earlier steps: their memory is used again
+    std::array<State, 2> moved;             // stages of a step
+    std::array<SolutionHistory, 2> history; // of both stages of a step
+    double last_rate = 0;                   // of the last solution
 };
 
 bool uses_dashpot(const Model& model);
@@ -43,9 +60,16 @@ bool uses_dashpot(const Model& model);
 /// Largest xi at which anything acts.
 double interaction_range(const Model& model);
 
-/// Pairs, contact forces and (in the buffers) the resistance matrix of a state; no velocities yet.
+/// Neighbours, geometry and touching pairs of a state: nothing if they are known.
+void locate(const State& state, const Model& model, Workspace::Buffers& buffers);
+
+/// The touching pair number k, i < j.
+Pair touching_pair(const State& state, const Workspace::Buffers& buffers, std::size_t k);
+
+/// Geometry, forces and resistance matrix of a state, in the buffers; contact forces also in the
+/// result. Springs act over the time `ahead` if there is one (implicit stages).
 Evaluation prepare(const State& state, const Model& model, const Control& control,
-                   Workspace::Buffers& buffers);
+                   const ImplicitStage* stage, Workspace::Buffers& buffers);
 
 /// The load of a dashpot in the ambient flow, per unit shear rate.
 lubrication::PairLoad dashpot_unit_load(const State& state, const PairState& pair);
@@ -65,14 +89,6 @@ struct Loads {
     double first_moment = 0;  // sum of sym(d, F)_xy of contacts and repulsion
 };
 Loads assemble_loads(const State& state, const Evaluation& evaluation, Workspace::Buffers& buffers);
-
-/// A pair in the affine flow of unit rate: its load and Ehat:R_SE:Ehat of the pair. With e = Ehat n
-/// and s = a_i + a_j the load is s XA (n.e) n + s YA (e - (n.e) n), s YB e x n.
-struct AffineLoad {
-    lubrication::PairLoad load;
-    double stress;
-};
-AffineLoad affine_load(const State& state, const Pair& pair, const BlockCoefficients& c);
 
 /// One solve: at an imposed rate, or by the rank-one form of stress control.
 void solve_at_once(const State& state, const Loads& loads, SolutionHistory& history,

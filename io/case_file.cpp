@@ -70,14 +70,12 @@ Json pair_json(const PairState& p, const PairForces& f, const ContactLoad* conta
 
 Json pairs_json(const Case& one, const Evaluation& e)
 {
-    std::vector<const ContactLoad*> contact(e.pairs.size(), nullptr);
-    for (const ContactLoad& c : e.contacts) contact[c.pair] = &c;
     const auto forces = pair_forces(one.state, e);
     Json rows = Json::array();
     const auto show = [&](std::size_t row) {
-        const Pair& pair = e.pairs[row].pair;
-        rows.push_back(pair_json(e.pairs[row], forces[row], contact[row],
-                                 relative_motion(one.state, e, pair).slip));
+        const PairState& p = e.pairs[row];
+        rows.push_back(pair_json(p, forces[row], p.contact < 0 ? nullptr : &e.contacts[p.contact],
+                                 relative_motion(one.state, e, p.pair).slip));
     };
     if (one.pair_rows.empty())
         for (std::size_t row = 0; row < e.pairs.size(); ++row) show(row);

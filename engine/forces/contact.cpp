@@ -33,6 +33,7 @@ ContactLoad contact_load(const Pair& pair, double a, double b, const Contact& me
     const double mean = (a + b) / 2, harmonic = 2 * a * b / (a + b);
     const Vec3& n = pair.normal;
     ContactLoad c;
+    c.pair = pair;
     c.load = -reference_force * k.normal * mean * mean * pair.xi;
     const double load = std::max(c.load - reference_force * m.critical_load, 0.);
     c.frictional = load > 0 && m.friction_static > 0;
@@ -40,15 +41,21 @@ ContactLoad contact_load(const Pair& pair, double a, double b, const Contact& me
     const double mu = memory.sliding ? m.friction_dynamic : m.friction_static;
     const Limited t = limited(memory.spring, n, reference_force * k.tangential * mean, mu * load,
                               m.friction_dynamic * load);
-    const double rolling_limit = m.rolling_friction * load;
-    const Limited rho = limited(memory.rolling, n, reference_force * k.rolling * mean,
-                                rolling_limit, rolling_limit);
-    c.memory = {pair.i, pair.j, t.stretch, rho.stretch, t.slips};
+    c.memory = {pair.i, pair.j, t.stretch, Vec3::Zero(), t.slips};
     c.friction = t.force;
     c.force_on_i = t.force - c.load * n;
-    const Vec3 lever = n.cross(t.force), roll = harmonic * n.cross(rho.force);
-    c.torque_on_i = a * lever + roll;
-    c.torque_on_j = b * lever - roll;
+    const Vec3 lever = n.cross(t.force);
+    c.torque_on_i = a * lever;
+    c.torque_on_j = b * lever;
+    if (k.rolling > 0) {
+        const double rolling_limit = m.rolling_friction * load;
+        const Limited rho = limited(memory.rolling, n, reference_force * k.rolling * mean,
+                                    rolling_limit, rolling_limit);
+        const Vec3 roll = harmonic * n.cross(rho.force);
+        c.memory.rolling = rho.stretch;
+        c.torque_on_i += roll;
+        c.torque_on_j -= roll;
+    }
     return c;
 }
 

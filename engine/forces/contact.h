@@ -15,7 +15,7 @@ namespace sigmaflow {
 
 /// Forces of one contact; friction, rolling moment and load in eta0 rate0 a^2.
 struct ContactLoad {
-    int pair = 0;     // index into the pairs of the evaluation
+    Pair pair;
     Contact memory;   // springs after projection and friction law
     double load = 0;  // N
     bool frictional = false;

@@ -14,44 +14,69 @@ using support::Random;
 namespace {
 
 struct Problem {
+    std::unique_ptr<Workspace> workspace;  // holds the slices of the matrix
     ResistanceMatrix matrix;
     std::vector<Candidate> candidates;
-    Velocities b, direction;
+    SlicedVector b, direction;
     double weight = 0;
+
+    const Slices& slices() const { return *matrix.slices; }
 };
+
+SlicedVector random_vector(const Slices& slices, Random& random)
+{
+    Velocities v;
+    for (int i = 0; i < slices.particles; ++i) v.push_back(random.velocity());
+    SlicedVector sliced;
+    to_slices(v, slices, sliced);
+    return sliced;
+}
 
 Problem dense_problem(int n)
 {
     State s = support::dense_state(n, 0.56, 0.4, 9);
     Random random(8);
     for (Vec3& x : s.position) x += 0.02 * random.vector();
-    Workspace workspace;
-    prepare(s, {}, ImposedStress{2}, workspace.buffers());
-    Problem p{workspace.buffers().matrix, workspace.buffers().neighbours.candidates(), {}, {}, 0};
-    for (int i = 0; i < n; ++i) {
-        p.b.push_back(random.velocity());
-        p.direction.push_back(random.velocity());
-    }
+    Problem p;
+    p.workspace = std::make_unique<Workspace>();
+    Workspace::Buffers& buffers = p.workspace->buffers();
+    prepare(s, {}, ImposedStress{2}, nullptr, buffers);
+    p.matrix = buffers.matrix;
+    p.candidates = buffers.neighbours.candidates();
+    p.b = random_vector(p.slices(), random);
+    p.direction = random_vector(p.slices(), random);
     return p;
 }
 
 Eigen::MatrixXd dense(const ResistanceMatrix& R)
 {
+    const Slices& slices = *R.slices;
+    std::vector<DiagonalSlice<d8>> blocks(slices.count + 1);
+    diagonal_blocks(R, {0, slices.count}, blocks.data());
     const int size = 6 * R.size();
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
-    for (int i = 0; i < R.size(); ++i) m.block<6, 6>(6 * i, 6 * i) = full(R.diagonal[i]);
-    for (const PairBlock& p : R.pairs) {
-        m.block<6, 6>(6 * p.i, 6 * p.j) = off_diagonal(p);
-        m.block<6, 6>(6 * p.j, 6 * p.i) = off_diagonal(p).transpose();
+    for (int i = 0; i < R.size(); ++i)
+        m.block<6, 6>(6 * i, 6 * i) = diagonal_block(blocks.data(), slices.slot[i]);
+    for (int pair : slices.pair_of) {
+        const int i = slices.particle[slices.first[pair]], j = slices.particle[slices.second[pair]];
+        m.block<6, 6>(6 * i, 6 * j) = off_diagonal_block(R, pair);
+        m.block<6, 6>(6 * j, 6 * i) = off_diagonal_block(R, pair).transpose();
     }
     return m;
 }
 
-Eigen::VectorXd dense(const Velocities& v)
+Eigen::VectorXd dense(const SlicedVector& v, const Slices& slices)
 {
-    Eigen::VectorXd d(6 * v.size());
-    for (std::size_t i = 0; i < v.size(); ++i) d.segment<6>(6 * i) = v[i];
+    Velocities velocities;
+    from_slices(v, slices, velocities);
+    Eigen::VectorXd d(6 * velocities.size());
+    for (std::size_t i = 0; i < velocities.size(); ++i) d.segment<6>(6 * i) = velocities[i];
     return d;
+}
+
+void scale_drag(ResistanceMatrix& matrix, double factor)
+{
+    for (D8& drag : matrix.drag) drag.v *= factor;
 }
 
 }
@@ -59,10 +84,10 @@ Eigen::VectorXd dense(const Velocities& v)
 TEST(ResistanceMatrix, TheCompressedProductIsTheDenseOne)
 {
     const Problem p = dense_problem(40);
-    Velocities product;
+    SlicedVector product;
     multiply(p.matrix, p.b, product);
-    EXPECT_LT((dense(product) - dense(p.matrix) * dense(p.b)).norm(),
-              1e-12 * dense(product).norm());
+    const Eigen::VectorXd found = dense(product, p.slices());
+    EXPECT_LT((found - dense(p.matrix) * dense(p.b, p.slices())).norm(), 1e-12 * found.norm());
 }
 
 class EverySolver : public testing::TestWithParam<SolverKind> {};
@@ -70,30 +95,30 @@ class EverySolver : public testing::TestWithParam<SolverKind> {};
 TEST_P(EverySolver, FindsTheDenseSolution)
 {
     const Problem p = dense_problem(60);
-    const Eigen::VectorXd expected = dense(p.matrix).llt().solve(dense(p.b));
+    const Eigen::VectorXd expected = dense(p.matrix).llt().solve(dense(p.b, p.slices()));
     ResistanceSolver solver({GetParam(), 1e-12});
     solver.set_pattern(60, p.candidates);
-    Velocities x;
+    SlicedVector x;
     const SolveReport report = solver.solve({p.matrix}, p.b, x);
-    EXPECT_LT((dense(x) - expected).norm(), 1e-9 * expected.norm());
+    EXPECT_LT((dense(x, p.slices()) - expected).norm(), 1e-9 * expected.norm());
     EXPECT_FALSE(report.fell_back);
-    const double residual = (dense(p.b) - dense(p.matrix) * dense(x)).norm() / dense(p.b).norm();
+    const double residual = (dense(p.b, p.slices()) - dense(p.matrix) * dense(x, p.slices())).norm() / dense(p.b, p.slices()).norm();
     EXPECT_NEAR(report.residual, residual, 1e-3 * residual + 1e-14);
 }
 
 TEST_P(EverySolver, FindsTheDenseSolutionOfTheRankOneForm)
 {
     Problem p = dense_problem(60);
-    const Eigen::VectorXd f = dense(p.direction);
+    const Eigen::VectorXd f = dense(p.direction, p.slices());
     const Eigen::MatrixXd R = dense(p.matrix);
     p.weight = 0.9 / f.dot(R.llt().solve(f));  // nearly singular: the dissipation is 10 % of R's
     const Eigen::MatrixXd A = R - p.weight * f * f.transpose();
-    const Eigen::VectorXd expected = A.llt().solve(dense(p.b));
+    const Eigen::VectorXd expected = A.llt().solve(dense(p.b, p.slices()));
     ResistanceSolver solver({GetParam(), 1e-12});
     solver.set_pattern(60, p.candidates);
-    Velocities x;
+    SlicedVector x;
     const SolveReport report = solver.solve({p.matrix, &p.direction, p.weight}, p.b, x);
-    EXPECT_LT((dense(x) - expected).norm(), 1e-8 * expected.norm());
+    EXPECT_LT((dense(x, p.slices()) - expected).norm(), 1e-8 * expected.norm());
     EXPECT_LT(report.residual, 1e-9);
 }
 
@@ -102,24 +127,24 @@ TEST_P(EverySolver, AcceptsAGuessAndAChangedMatrix)
     Problem p = dense_problem(60);
     ResistanceSolver solver({GetParam(), 1e-10});
     solver.set_pattern(60, p.candidates);
-    Velocities x;
+    SlicedVector x;
     solver.solve({p.matrix}, p.b, x);
     for (int change = 0; change < 25; ++change) {
-        for (DiagonalBlock& block : p.matrix.diagonal)
-            for (double& value : block.translation) value *= 1.01;
+        scale_drag(p.matrix, 1.05);
         solver.solve({p.matrix}, p.b, x);
     }
-    const Eigen::VectorXd expected = dense(p.matrix).llt().solve(dense(p.b));
-    EXPECT_LT((dense(x) - expected).norm(), 1e-7 * expected.norm());
+    const Eigen::VectorXd expected = dense(p.matrix).llt().solve(dense(p.b, p.slices()));
+    EXPECT_LT((dense(x, p.slices()) - expected).norm(), 1e-7 * expected.norm());
 }
 
 TEST_P(EverySolver, AMatrixThatIsNotPositiveDefiniteIsAnErrorThatNamesAParticle)
 {
     Problem p = dense_problem(60);
-    p.matrix.diagonal[17].translation[2] = -1e6;
+    const int slot = p.slices().slot[17];
+    p.matrix.drag[2 * (slot / lanes)].v[slot % lanes] = -1e6;
     ResistanceSolver solver({GetParam(), 1e-10});
     solver.set_pattern(60, p.candidates);
-    Velocities x;
+    SlicedVector x;
     try {
         solver.solve({p.matrix}, p.b, x);
         FAIL() << "no error";
@@ -130,9 +155,12 @@ TEST_P(EverySolver, AMatrixThatIsNotPositiveDefiniteIsAnErrorThatNamesAParticle)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver, testing::Values(SolverKind::pcg, SolverKind::cholesky),
+INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver, testing::Values(SolverKind::pcg, SolverKind::cholesky,
+                                         SolverKind::lagged_cholesky),
                          [](const auto& kind) {
-                             return kind.param == SolverKind::pcg ? "pcg" : "cholesky";
+                             return kind.param == SolverKind::pcg        ? "pcg"
+                                    : kind.param == SolverKind::cholesky ? "cholesky"
+                                                                         : "lagged_cholesky";
                          });
 
 TEST(ConjugateGradients, AGoodGuessSavesIterations)
@@ -140,9 +168,10 @@ TEST(ConjugateGradients, AGoodGuessSavesIterations)
     const Problem p = dense_problem(60);
     ResistanceSolver solver({SolverKind::pcg, 1e-8});
     solver.set_pattern(60, p.candidates);
-    Velocities x;
+    SlicedVector x;
     const int cold = solver.solve({p.matrix}, p.b, x).iterations;
-    for (Vec6& v : x) v *= 1 + 1e-4;
+    for (Slice6& slice : x)
+        for (d8& c : slice.c) c *= 1 + 1e-4;
     EXPECT_LT(solver.solve({p.matrix}, p.b, x).iterations, cold);
     EXPECT_EQ(solver.solve({p.matrix}, p.b, x).iterations, 0);
 }
