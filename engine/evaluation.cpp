@@ -17,28 +17,31 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-void SolutionHistory::guess(double at, Velocities& v) const
+double SolutionHistory::guess(double at, Velocities& v) const
 {
     v.clear();
-    if (known == 0) return;
+    if (known == 0) return 0;
     v = solution[0];
     const double interval = time[0] - time[1], ahead = at - time[0];
     // beyond a few intervals a straight line is worse than the last value
-    if (known == 1 || ahead == 0 || !(std::abs(ahead) < 4 * std::abs(interval))) return;
+    if (known == 1 || ahead == 0 || !(std::abs(ahead) < 4 * std::abs(interval))) return rate[0];
     const double weight = ahead / interval;
     for (std::size_t i = 0; i < v.size(); ++i) v[i] += weight * (solution[0][i] - solution[1][i]);
+    return rate[0] + weight * (rate[0] - rate[1]);
 }
 
-void SolutionHistory::remember(double at, const Velocities& v)
+void SolutionHistory::remember(double at, const Velocities& v, double shear_rate)
 {
     if (known > 0 && solution[0].size() != v.size()) known = 0;
     if (known > 0 && at != time[0]) {
         std::swap(solution[0], solution[1]);
         time[1] = time[0];
+        rate[1] = rate[0];
         known = 2;
     }
     known = std::max(known, 1);
     time[0] = at;
+    rate[0] = shear_rate;
     solution[0] = v;
 }
 
@@ -230,42 +233,19 @@ void fill_drag(const State& s, const Model& m, Workspace::Buffers& b)
     }
 }
 
-// Horizon of the secant stiffness of sliding contacts, in steps. Less brakes the sliding (it is the
-// first-order error of the scheme in the friction), more leaves the springs too stiff for the step.
-constexpr double secant_steps = 2;
-
-// A sliding contact resists further sliding by its limit, not by its stiffness: the slope of the
-// secant of its force over the coming steps relative to the stiffness.
-double sliding_factor(const ContactLoad& c, const Vec3& slip, double horizon)
-{
-    const double stretch = c.memory.spring.norm();
-    const double later = (c.memory.spring + horizon * slip).norm();
-    return later > stretch ? stretch / later : 1;
-}
-
-/// Velocities from which the slip of sliding contacts is estimated.
-struct Estimate {
-    const Velocities& nonaffine;
-    double rate;
-};
-
 // A spring of stiffness k that follows a relative motion v for the time `ahead` changes its force
-// by - ahead k v: the structure of a pair resistance with XA = ahead kn, YA = ahead kt.
+// by - ahead k v: the structure of a pair resistance with XA = ahead kn, YA = ahead kt. A sliding
+// contact keeps the secant of its friction, `share` of kt.
 void add_springs(const State& s, const Stiffness& k, const ContactLoad& c, int candidate,
-                 const ImplicitStage& stage, const Estimate& estimate, Workspace::Buffers& b)
+                 double ahead, double share, Workspace::Buffers& b)
 {
-    double factor = 1;
-    if (c.memory.sliding && !estimate.nonaffine.empty()) {
-        const PairVelocities v = moving(s, estimate.nonaffine, estimate.rate, c.pair);
-        factor = sliding_factor(c, relative_motion(s, v, c.pair).slip, secant_steps * stage.step);
-    }
     const double x = s.radius[c.pair.i], y = s.radius[c.pair.j];
-    const double scale = reference_force * stage.ahead * (x + y) / 2;
+    const double scale = reference_force * ahead * (x + y) / 2;
     const double harmonic = 2 * x * y / (x + y);
     const int pair = b.slices.pair_of[candidate], lane = pair % lanes;
     PairSprings& spring = b.table.springs[pair / lanes];
     spring.normal[lane] = scale * k.normal;
-    spring.shear[lane] = scale * k.tangential * factor;
+    spring.shear[lane] = scale * k.tangential * share;
     spring.roll[lane] = scale * k.rolling * harmonic * harmonic;
 }
 
@@ -287,17 +267,13 @@ Evaluation prepare(const State& s, const Model& model, const Control& control,
     const Stiffness k = stiffness(model, control);
     find_memories(s, b);
     e.contacts.resize(b.touching.size());
-    const bool second = stage && stage->earlier;
-    if (stage && !second) b.history[0].guess(s.time, b.guess);
-    const Estimate estimate = second ? Estimate{stage->earlier->nonaffine, stage->earlier->shear_rate}
-                                     : Estimate{b.guess, b.last_rate};
-    if (second) to_slices(stage->earlier->nonaffine, b.slices, b.right);
+    if (stage) to_slices(*stage->predicted, b.slices, b.right);
     fill_drag(s, model, b);
     with_team(b.threads, [&](const Team& team) {
         const Range own = team.share(b.slices.count);
         find_factors(b.slices, model, k, own, b.table, b.moment.data());
         if (stage) find_repulsion_springs(b.slices, model, stage->ahead, own, b.table);
-        if (second) write_rows(b.right, own, row_values(b));
+        if (stage) write_rows(b.right, own, row_values(b));
         team.barrier();
         const Range contacts = team.share(static_cast<int>(b.touching.size()));
         for (int c = contacts.begin; c < contacts.end; ++c) {
@@ -307,12 +283,14 @@ Evaluation prepare(const State& s, const Model& model, const Control& control,
                              b.memory[c] < 0 ? Contact{pair.i, pair.j} : s.contacts[b.memory[c]],
                              model, k);
             add_contact(s, e.contacts[c], b.touching[c], b);
-            if (stage) add_springs(s, k, e.contacts[c], b.touching[c], *stage, estimate, b);
+            if (stage)
+                add_springs(s, k, e.contacts[c], b.touching[c], stage->ahead, (*stage->share)[c],
+                            b);
         }
         team.barrier();
-        if (second)
-            add_earlier_motion(b.slices, row_values(b), stage->earlier->shear_rate, own, b.table,
-                               b.moment.data());
+        if (stage)
+            add_predicted_motion(b.slices, row_values(b), stage->predicted_rate, own, b.table,
+                                 b.moment.data());
         fill_matrix(b.slices, b.table, stage != nullptr, own, b.matrix);
         team.barrier();
         sum_loads(b.slices, b.table, b.matrix, !uses_dashpot(model), own,
@@ -452,8 +430,7 @@ void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
     }
     from_slices(b.solution, b.slices, e.nonaffine);
     if (!e.model.background_drag) remove_drift(s, e.nonaffine);
-    history.remember(s.time, e.nonaffine);
-    b.last_rate = e.shear_rate;
+    history.remember(s.time, e.nonaffine, e.shear_rate);
 }
 
 void complete(const State& state, Evaluation& e)
@@ -476,7 +453,7 @@ Evaluation evaluate(const State& state, const Model& model, const Control& contr
     if (uses_dashpot(model) && std::holds_alternative<ImposedStress>(control))
         solve_twice(state, loads, workspace, e);
     else
-        solve_at_once(state, loads, b.history[0], b, e);
+        solve_at_once(state, loads, b.history, b, e);
     complete(state, e);
     return e;
 }
@@ -489,7 +466,7 @@ Evaluation evaluate_implicitly(const State& state, const Model& model, const Con
                     "\"dashpot\" cannot be used with the scheme \"implicit\"");
     Workspace::Buffers& b = workspace.buffers();
     Evaluation e = prepare(state, model, control, &stage, b);
-    solve_at_once(state, assemble_loads(state, e, b), b.history[stage.earlier ? 1 : 0], b, e);
+    solve_at_once(state, assemble_loads(state, e, b), b.history, b, e);
     complete(state, e);
     return e;
 }

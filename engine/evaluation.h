@@ -110,17 +110,18 @@ private:
 Evaluation evaluate(const State& state, const Model& model, const Control& control,
                     Workspace& workspace);
 
-/// A stage of a linearly implicit step (step.h). Contact springs and repulsion are taken at the
-/// positions that the stage itself reaches after the time `ahead`: each pair resists the relative
-/// motion of its surfaces with ahead * stiffness more. In the second stage, twice that resistance
-/// times the motion of the first one is added to the loads.
+/// What an implicit step (step.h) adds to the force balance of its predicted end. Contact springs
+/// and repulsion are taken where the velocities found bring them, not where the predicted ones did:
+/// each pair resists the difference with `ahead` times its stiffness.
 struct ImplicitStage {
-    double ahead = 0;                     // [1/rate0] > 0
-    double step = 0;                      // length of the whole step [1/rate0]
-    const Evaluation* earlier = nullptr;  // the first stage, in the second one
+    double ahead = 0;                     // time for which the velocities act [1/rate0] > 0
+    const Velocities* predicted = nullptr;  // V that led to the state
+    double predicted_rate = 0;
+    const std::vector<double>* share = nullptr;  // of each touching pair: its friction over that of
+                                                 // a spring without limit [0, 1]
 };
 
-/// Velocities of such a stage. Errors: as evaluate, and input for the dashpot variant.
+/// Velocities at the end of such a step. Errors: as evaluate, and input for the dashpot variant.
 Evaluation evaluate_implicitly(const State& state, const Model& model, const Control& control,
                                const ImplicitStage& stage, Workspace& workspace);
 

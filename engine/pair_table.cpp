@@ -171,8 +171,8 @@ void find_repulsion_springs(const Slices& s, const Model& m, double ahead, Range
                             zero, zero};
 }
 
-SIGMAFLOW_HOT void add_earlier_motion(const Slices& s, const double* rows, double rate, Range range,
-                                      PairTable& table, D8* moment)
+SIGMAFLOW_HOT void add_predicted_motion(const Slices& s, const double* rows, double rate,
+                                        Range range, PairTable& table, D8* moment)
 {
     for (int slice = range.begin; slice < range.end; ++slice) {
         d8 sum{};
@@ -190,13 +190,13 @@ SIGMAFLOW_HOT void add_earlier_motion(const Slices& s, const double* rows, doubl
             const d8 along = dot(n, du);
             const Triple<d8> slip =
                 du - along * n - cross(n, shape.a * wi + shape.b * wj);
-            const Triple<d8> friction = 2 * spring.shear * slip;
-            const Triple<d8> force = 2 * spring.normal * along * n + friction;
+            const Triple<d8> friction = spring.shear * slip;
+            const Triple<d8> force = spring.normal * along * n + friction;
             const Triple<d8> turning = wi - wj;
             PairForce& out = table.force[g];
             out.force = out.force + force;
             out.lever = out.lever + cross(n, friction);
-            out.roll = out.roll + 2 * spring.roll * (turning - dot(n, turning) * n);
+            out.roll = out.roll + spring.roll * (turning - dot(n, turning) * n);
             sum += shape.sum * dot(e, force);
         }
         moment[slice].v += sum;

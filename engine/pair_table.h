@@ -68,9 +68,9 @@ void find_factors(const Slices& slices, const Model& model, const Stiffness& sti
 void find_repulsion_springs(const Slices& slices, const Model& model, double ahead, Range range,
                             PairTable& table);
 
-/// Adds twice what the springs resist to the motion of an earlier stage (rows of V, shear rate),
-/// and its part of the shear moment.
-void add_earlier_motion(const Slices& slices, const double* rows, double shear_rate, Range range,
+/// Adds what the springs resist to the predicted motion (rows of V, shear rate), and its part of the
+/// shear moment.
+void add_predicted_motion(const Slices& slices, const double* rows, double shear_rate, Range range,
                         PairTable& table, D8* moment);
 
 /// Pairs of the matrix: lubrication, and springs if asked.

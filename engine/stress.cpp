@@ -178,8 +178,7 @@ DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
     find_rate_and_stress(state, d);
     superpose(state, d);
     complete(state, d.evaluation);
-    b.history[0].remember(state.time, d.evaluation.nonaffine);
-    b.last_rate = d.evaluation.shear_rate;
+    b.history.remember(state.time, d.evaluation.nonaffine, d.evaluation.shear_rate);
     return d;
 }
 

@@ -13,11 +13,18 @@ namespace sigmaflow {
 /// Solutions at the last two different times, for a guess linear in time.
 struct SolutionHistory {
     int known = 0;
-    std::array<double, 2> time{};  // newest first
+    std::array<double, 2> time{}, rate{};  // newest first
     std::array<Velocities, 2> solution;
 
-    void guess(double at, Velocities& v) const;
-    void remember(double at, const Velocities& v);
+    /// Leaves v empty if nothing is known; returns the shear rate.
+    double guess(double at, Velocities& v) const;
+    void remember(double at, const Velocities& v, double shear_rate);
+};
+
+/// Mean motion over an implicit step, as seen from its end: the next step leans on it.
+struct PastStep {
+    double time = -1, dt = 0;  // at its end; its length
+    Evaluation mean;                       // nonaffine, shear_rate, contacts, motion
 };
 
 /// Rows of eight doubles, aligned.
@@ -48,11 +55,12 @@ struct Workspace::Buffers {
     std::vector<D8> moment, affine;         // partial sums of the slices
     SlicedVector unit_load, fixed_load;     // per unit rate, rate free
     SlicedVector right, solution, other_solution;
-    Velocities guess;
+    Velocities guess, predicted;
     std::vector<Evaluation> spare;          // of earlier steps: their memory is used again
     std::array<State, 2> moved;             // stages of a step
-    std::array<SolutionHistory, 2> history; // of both stages of a step
-    double last_rate = 0;                   // of the last solution
+    SolutionHistory history;
+    std::array<PastStep, 2> past;           // implicit steps: the last one, and one before or undone
+    std::vector<double> friction_share;     // of the touching pairs after the last move
 };
 
 bool uses_dashpot(const Model& model);
