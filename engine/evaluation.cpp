@@ -128,16 +128,17 @@ void locate(const State& s, const Model& m, Workspace::Buffers& b)
     b.located = false;
     bool good = true;
     with_team(b.threads, [&](const Team& team) {
-        const Range own = team.share(b.slices.count);
-        write_positions(s, b.slices, own, row_values(b));
+        team.own(b.slices,
+                 [&](Range own) { write_positions(s, b.slices, own, row_values(b)); });
         if (team.rank == 0)  // the particle of unused lanes, where no other is
             std::fill_n(row_values(b) + 4 * b.slices.slots(), 3, -s.box.length.x() / 3);
         team.barrier();
-        const bool all = find_geometry(b.slices, s.box, row_values(b), own, b.table);
-        if (!all) {
+        team.own(b.slices, [&](Range own) {
+            if (!find_geometry(b.slices, s.box, row_values(b), own, b.table)) {
 #pragma omp atomic write
-            good = false;
-        }
+                good = false;
+            }
+        });
     });
     if (!good) find_pairs(s, range, b.neighbours);  // throws and says which centres coincide
     b.touching.clear();
@@ -270,12 +271,13 @@ Evaluation prepare(const State& s, const Model& model, const Control& control,
     if (stage) to_slices(*stage->predicted, b.slices, b.right);
     fill_drag(s, model, b);
     with_team(b.threads, [&](const Team& team) {
-        const Range own = team.share(b.slices.count);
-        find_factors(b.slices, model, k, own, b.table, b.moment.data());
-        if (stage) find_repulsion_springs(b.slices, model, stage->ahead, own, b.table);
-        if (stage) write_rows(b.right, own, row_values(b));
+        team.own(b.slices, [&](Range own) {
+            find_factors(b.slices, model, k, own, b.table, b.moment.data());
+            if (stage) find_repulsion_springs(b.slices, model, stage->ahead, own, b.table);
+            if (stage) write_rows(b.right, own, row_values(b));
+        });
         team.barrier();
-        const Range contacts = team.share(static_cast<int>(b.touching.size()));
+        const Range contacts = team.share(0, static_cast<int>(b.touching.size()));
         for (int c = contacts.begin; c < contacts.end; ++c) {
             const Pair pair = touching_pair(s, b, c);
             e.contacts[c] =
@@ -288,13 +290,17 @@ Evaluation prepare(const State& s, const Model& model, const Control& control,
                             b);
         }
         team.barrier();
-        if (stage)
-            add_predicted_motion(b.slices, row_values(b), stage->predicted_rate, own, b.table,
-                                 b.moment.data());
-        fill_matrix(b.slices, b.table, stage != nullptr, own, b.matrix);
+        team.own(b.slices, [&](Range own) {
+            if (stage)
+                add_predicted_motion(b.slices, row_values(b), stage->predicted_rate, own, b.table,
+                                     b.moment.data());
+            fill_matrix(b.slices, b.table, stage != nullptr, own, b.matrix);
+        });
         team.barrier();
-        sum_loads(b.slices, b.table, b.matrix, !uses_dashpot(model), own,
-                  {b.unit_load, b.fixed_load, b.affine.data()});
+        team.own(b.slices, [&](Range own) {
+            sum_loads(b.slices, b.table, b.matrix, !uses_dashpot(model), own,
+                      {b.unit_load, b.fixed_load, b.affine.data()});
+        });
     });
     return e;
 }

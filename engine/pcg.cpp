@@ -443,22 +443,17 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
     const ResistanceMatrix& matrix = problem.matrix;
     const Slices& s = *matrix.slices;
     const std::size_t stride = s.count + 1;
-    const Range own = team.share(s.count);
-    // a phase in which slices depend on those of earlier colours
+    const auto own = [&](const auto& phase) { team.own(s, phase); };
     const auto by_colours = [&](bool forwards, const auto& phase) {
-        if (team.size == 1) {
-            phase(Range{0, s.count});
-            return;
-        }
-        const int colours = static_cast<int>(s.colour.size()) - 1;
-        for (int k = 0; k < colours; ++k) {
-            const int c = forwards ? k : colours - 1 - k;
-            phase(team.share(s.colour[c], s.colour[c + 1]));
-            team.barrier();
-        }
+        team.by_colours(s, forwards, phase);
+    };
+    const auto own_slices = [&](const auto& phase) {
+        own([&](Range range) {
+            for (int k = range.begin; k < range.end; ++k) phase(k);
+        });
     };
 
-    load(matrix, own);
+    own([&](Range range) { load(matrix, range); });
     team.barrier();
     if (age_ < 0) {
         by_colours(true, [&](Range range) { factorise(matrix, range); });
@@ -493,24 +488,26 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
     Slice* f = vector();
     if (problem.direction) {
         const SlicedVector& direction = *problem.direction;
-        for (int k = own.begin; k < own.end; ++k)
+        own_slices([&](int k) {
             for (int c = 0; c < 6; ++c) f[k].c[c] = narrowed(direction[k].c[c]);
+        });
         sweep.f = f;
     }
     double* rows = reinterpret_cast<double*>(double_rows_.data());
     D8 *first_sum = double_partial_.data(), *second_sum = first_sum + stride;
 
     // size of the right-hand side, and in the norm of the preconditioner
-    square(b, own, first_sum);
+    own([&](Range range) { square(b, range, first_sum); });
     team.barrier();
     const double b2 = sum_of(first_sum, s.count);
     if (!(b2 > 0)) {
-        for (int k = own.begin; k < own.end; ++k) x[k] = Slice6{};
+        own_slices([&](int k) { x[k] = Slice6{}; });
         return std::isfinite(b2);
     }
     const auto narrow = [&](const SlicedVector& from, double size) {
-        for (int k = own.begin; k < own.end; ++k)
+        own_slices([&](int k) {
             for (int c = 0; c < 6; ++c) right[k].c[c] = narrowed(from[k].c[c] / size);
+        });
         team.barrier();
         by_colours(true, [&](Range range) { sweep.forward(right, sweep.r, sweep.z, range); });
         return sum_of(sweep.partial, s.count);
@@ -520,16 +517,19 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
     double before = 0;
     for (int correction = 0;; ++correction) {
         team.barrier();
-        write_rows(x, own, rows);
-        if (problem.direction) product(*problem.direction, x, own, first_sum);
+        own([&](Range range) {
+            write_rows(x, range, rows);
+            if (problem.direction) product(*problem.direction, x, range, first_sum);
+        });
         team.barrier();
-        subtract_product(matrix, x, rows, b, own, residual_);
+        own([&](Range range) { subtract_product(matrix, x, rows, b, range, residual_); });
         if (problem.direction) {
             const double fx = problem.weight * sum_of(first_sum, s.count);
-            for (int k = own.begin; k < own.end; ++k)
+            own_slices([&](int k) {
                 for (int c = 0; c < 6; ++c) residual_[k].c[c] += fx * (*problem.direction)[k].c[c];
+            });
         }
-        square(residual_, own, second_sum);
+        own([&](Range range) { square(residual_, range, second_sum); });
         team.barrier();
         const double r2 = sum_of(second_sum, s.count);
         report.residual = std::sqrt(r2 / b2);
@@ -543,7 +543,7 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
         if (correction == most_corrections || (correction && now > 0.8 * before)) return false;
         before = now;
 
-        for (int k = own.begin; k < own.end; ++k) sweep.p[k] = sweep.x[k] = Slice{};
+        own_slices([&](int k) { sweep.p[k] = sweep.x[k] = Slice{}; });
         const double enough =
             std::max(margin * goal / r2, narrow_reduction * narrow_reduction * start);
         double rho = start, beta = 0;
@@ -559,7 +559,7 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
             const double curvature = sum_of(sweep.second_partial, s.count);
             if (!(curvature > 0) || !std::isfinite(curvature)) return false;
             team.barrier();
-            sweep.update(static_cast<float>(rho / curvature), own);
+            own([&](Range range) { sweep.update(static_cast<float>(rho / curvature), range); });
             team.barrier();
             const double next_rho = sum_of(sweep.partial, s.count);
             if (!std::isfinite(next_rho)) return false;
@@ -567,8 +567,9 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
             rho = next_rho;
             ++report.iterations;
         }
-        for (int k = own.begin; k < own.end; ++k)
+        own_slices([&](int k) {
             for (int c = 0; c < 6; ++c) x[k].c[c] += size * widened(sweep.x[k].c[c]);
+        });
     }
 }
 

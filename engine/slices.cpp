@@ -90,8 +90,8 @@ Slices make_slices(const State& state, const std::vector<Candidate>& candidates)
         ++degree[i][colour[j] > colour[i]];
         ++degree[j][colour[i] > colour[j]];
     }
-    // in large systems neighbours in memory should be neighbours in space
-    constexpr int block = 2048;
+    // neighbours in memory should be neighbours in space, and members of a team have different parts
+    const int block = std::clamp(n / 8, 64, 2048);
     std::vector<int> rank(n);
     for (int k = 0; k < n; ++k) rank[order[k]] = k / block;
     std::vector<int> sorted = order;

@@ -2,9 +2,18 @@
 //
 // Every phase divides its slices among the members; a barrier ends it. What a member computes does
 // not depend on how many there are, and sums are taken over all slices in one order: results are
-// bitwise the same for any number of threads.
+// bitwise the same for any number of threads. A member has the same part of space in every phase:
+// what it wrote is in its own cache.
+//
+// The barrier spins, because phases are shorter than OpenMP's own barrier takes (0.3 against 0.04
+// microseconds here), and gives way when it has waited long: more members than cores are slow, not
+// stuck.
 #pragma once
+#include "engine/slices.h"
+
 #include <omp.h>
+#include <atomic>
+#include <thread>
 
 namespace sigmaflow {
 
@@ -12,8 +21,28 @@ struct Range {
     int begin, end;
 };
 
+class SpinBarrier {
+public:
+    void wait(int members)
+    {
+        const int phase = phase_.load(std::memory_order_relaxed);
+        if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == members) {
+            arrived_.store(0, std::memory_order_relaxed);
+            phase_.store(phase + 1, std::memory_order_release);
+            return;
+        }
+        for (int spins = 0; phase_.load(std::memory_order_acquire) == phase; ++spins)
+            if (spins > 20000) std::this_thread::yield();
+    }
+
+private:
+    alignas(64) std::atomic<int> arrived_{0};
+    alignas(64) std::atomic<int> phase_{0};
+};
+
 struct Team {
     int rank = 0, size = 1;
+    SpinBarrier* meeting = nullptr;
 
     Range share(int begin, int end) const
     {
@@ -21,13 +50,39 @@ struct Team {
         return {begin + static_cast<int>(count * rank / size),
                 begin + static_cast<int>(count * (rank + 1) / size)};
     }
-    Range share(int count) const { return share(0, count); }
+
+    /// work(range) for all slices of this member, in no particular order of the colours.
+    template <class Work>
+    void own(const Slices& slices, const Work& work) const
+    {
+        if (size == 1) {
+            work(Range{0, slices.count});
+            return;
+        }
+        for (std::size_t c = 0; c + 1 < slices.colour.size(); ++c)
+            work(share(slices.colour[c], slices.colour[c + 1]));
+    }
+
+    /// The same, colour after colour: slices may depend on those of earlier colours, or of later
+    /// ones if it goes backwards.
+    template <class Work>
+    void by_colours(const Slices& slices, bool forwards, const Work& work) const
+    {
+        if (size == 1) {
+            work(Range{0, slices.count});
+            return;
+        }
+        const int colours = static_cast<int>(slices.colour.size()) - 1;
+        for (int k = 0; k < colours; ++k) {
+            const int c = forwards ? k : colours - 1 - k;
+            work(share(slices.colour[c], slices.colour[c + 1]));
+            barrier();
+        }
+    }
 
     void barrier() const
     {
-        if (size > 1) {
-#pragma omp barrier
-        }
+        if (size > 1) meeting->wait(size);
     }
 };
 
@@ -39,8 +94,9 @@ void with_team(int threads, const Work& work)
         work(Team{});
         return;
     }
+    SpinBarrier meeting;
 #pragma omp parallel num_threads(threads)
-    work(Team{omp_get_thread_num(), omp_get_num_threads()});
+    work(Team{omp_get_thread_num(), omp_get_num_threads(), &meeting});
 }
 
 }
