@@ -122,10 +122,11 @@ double* row_values(Workspace::Buffers& b)
 void locate(const State& s, const Model& m, Workspace::Buffers& b)
 {
     const double range = interaction_range(m);
-    const bool rebuilt = b.neighbours.update(s, range);
-    if (rebuilt) make_pattern(s, b);
-    if (!rebuilt && b.located && b.box.offset == s.box.offset && b.position == s.position) return;
+    if (b.located && b.range == range && b.box.offset == s.box.offset &&
+        b.box.length == s.box.length && b.position == s.position && b.radius == s.radius)
+        return;
     b.located = false;
+    if (b.neighbours.update(s, range, b.threads)) make_pattern(s, b);
     bool good = true;
     with_team(b.threads, [&](const Team& team) {
         team.own(b.slices,
@@ -147,22 +148,27 @@ void locate(const State& s, const Model& m, Workspace::Buffers& b)
         if (b.table.geometry[pair / lanes].xi[pair % lanes] <= 0)
             b.touching.push_back(static_cast<int>(k));
     }
+    b.touching_pairs.resize(b.touching.size());
+    const double* radius = s.radius.data();
+    for (std::size_t k = 0; k < b.touching.size(); ++k) {
+        const int candidate = b.touching[k];
+        const int pair = b.slices.pair_of[candidate], l = pair % lanes;
+        const PairGeometry& g = b.table.geometry[pair / lanes];
+        const double sign = b.slices.flipped[candidate] ? -1 : 1;
+        const auto [i, j] = b.neighbours.candidates()[candidate];
+        const Vec3 normal = sign * Vec3(g.nx[l], g.ny[l], g.nz[l]);
+        b.touching_pairs[k] = {i,      j,
+                               static_cast<int>(sign * g.image[l]),
+                               g.distance[l] * normal,
+                               normal, g.distance[l],
+                               g.distance[l] - radius[i] - radius[j],
+                               g.xi[l]};
+    }
     b.position = s.position;
+    b.radius = s.radius;
     b.box = s.box;
+    b.range = range;
     b.located = true;
-}
-
-Pair touching_pair(const State& s, const Workspace::Buffers& b, std::size_t k)
-{
-    const int candidate = b.touching[k];
-    const int pair = b.slices.pair_of[candidate], l = pair % lanes;
-    const PairGeometry& g = b.table.geometry[pair / lanes];
-    const double sign = b.slices.flipped[candidate] ? -1 : 1;
-    const auto [i, j] = b.neighbours.candidates()[candidate];
-    Pair p{i, j, static_cast<int>(sign * g.image[l]), {}, sign * Vec3(g.nx[l], g.ny[l], g.nz[l]),
-           g.distance[l], g.distance[l] - s.radius[i] - s.radius[j], g.xi[l]};
-    p.separation = p.distance * p.normal;
-    return p;
 }
 
 namespace {
@@ -279,7 +285,7 @@ Evaluation prepare(const State& s, const Model& model, const Control& control,
         team.barrier();
         const Range contacts = team.share(0, static_cast<int>(b.touching.size()));
         for (int c = contacts.begin; c < contacts.end; ++c) {
-            const Pair pair = touching_pair(s, b, c);
+            const Pair& pair = b.touching_pairs[c];
             e.contacts[c] =
                 contact_load(pair, s.radius[pair.i], s.radius[pair.j],
                              b.memory[c] < 0 ? Contact{pair.i, pair.j} : s.contacts[b.memory[c]],
@@ -439,15 +445,17 @@ void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
     history.remember(s.time, e.nonaffine, e.shear_rate);
 }
 
-void complete(const State& state, Evaluation& e)
+void complete(const State& state, int threads, Evaluation& e)
 {
     bool finite = std::isfinite(e.shear_rate);
     for (const Vec6& v : e.nonaffine) finite = finite && v.allFinite();
     if (!finite) throw Error(ErrorKind::numerics, "", "the shear rate or a velocity is not finite");
-    e.motion.clear();
-    e.motion.reserve(e.contacts.size());
-    for (const ContactLoad& c : e.contacts)
-        e.motion.push_back(relative_motion(state, e, c.pair));
+    e.motion.resize(e.contacts.size());
+    with_team(threads, [&](const Team& team) {
+        const Range own = team.share(0, static_cast<int>(e.contacts.size()));
+        for (int c = own.begin; c < own.end; ++c)
+            e.motion[c] = relative_motion(state, e, e.contacts[c].pair);
+    });
 }
 
 Evaluation evaluate(const State& state, const Model& model, const Control& control,
@@ -460,7 +468,7 @@ Evaluation evaluate(const State& state, const Model& model, const Control& contr
         solve_twice(state, loads, workspace, e);
     else
         solve_at_once(state, loads, b.history, b, e);
-    complete(state, e);
+    complete(state, b.threads, e);
     return e;
 }
 
@@ -473,7 +481,7 @@ Evaluation evaluate_implicitly(const State& state, const Model& model, const Con
     Workspace::Buffers& b = workspace.buffers();
     Evaluation e = prepare(state, model, control, &stage, b);
     solve_at_once(state, assemble_loads(state, e, b), b.history, b, e);
-    complete(state, e);
+    complete(state, b.threads, e);
     return e;
 }
 

@@ -2,6 +2,7 @@
 
 #include "engine/lubrication/pair_resistance.h"
 
+#include <array>
 #include <cmath>
 
 // The vector versions of glibc (libmvec), which are accurate to 4 units in the last place.
@@ -59,6 +60,20 @@ void make_shapes(const State& state, const Slices& s, PairTable& table)
     table.factors.assign(s.groups() + 1, PairFactors{});
     table.force.assign(s.groups() + 1, PairForce{});
     table.springs.assign(s.groups() + 1, PairSprings{});
+    // there are few different pairs of radii: the last ones are remembered
+    struct Known {
+        double a = 0, b = 0;
+        lubrication::PairResistance c;
+    };
+    std::array<Known, 4> known;
+    std::size_t oldest = 0;
+    const auto coefficients = [&](double a, double b) -> const lubrication::PairResistance& {
+        for (const Known& k : known)
+            if (k.a == a && k.b == b) return k.c;
+        Known& k = known[oldest++ % known.size()];
+        k = {a, b, lubrication::pair_coefficients(a, b)};
+        return k.c;
+    };
     for (int pair = 0; pair < s.pairs(); ++pair) {
         PairShape& shape = table.shape[pair / lanes];
         const int l = pair % lanes;
@@ -66,7 +81,7 @@ void make_shapes(const State& state, const Slices& s, PairTable& table)
         if (s.second[pair] == s.slots()) continue;
         const double a = state.radius[s.particle[s.first[pair]]];
         const double b = state.radius[s.particle[s.second[pair]]];
-        const auto c = lubrication::pair_coefficients(a, b);
+        const auto& c = coefficients(a, b);
         shape.a[l] = a;
         shape.b[l] = b;
         shape.sum[l] = a + b;

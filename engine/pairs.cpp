@@ -1,6 +1,8 @@
 #include "engine/pairs.h"
 
 #include "engine/error.h"
+#include "engine/lanes.h"
+#include "engine/team.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +12,16 @@ namespace sigmaflow {
 
 namespace {
 
-constexpr double skin_in_radii = 0.1;  // of the largest radius
+// Pairs beyond the range cost time in every evaluation, rebuilding costs time as often as the skin
+// is used up: the best skin is near the square root of this times what an evaluation uses of it.
+constexpr double rebuilding_cost = 2;  // in evaluations, times a third of the reach [a]
+constexpr double first_skin = 0.1, least_skin = 0.02, largest_skin = 0.4;  // [a]
 
-/// Cells of at least the reach in y and z, and in x; the particles of each cell in ascending order.
+/// Cells of at least the reach in y and z, and in x; the particles cell by cell.
 struct Cells {
     int nx, ny, nz;
     std::vector<int> start, particle;
+    std::vector<double> x, y, z, radius;  // of the particles in this order
 
     int index(int cx, int cy, int cz) const { return (cz * ny + cy) * nx + cx; }
 };
@@ -54,29 +60,99 @@ Cells sort_into_cells(const State& s, const std::vector<Vec3>& x, double reach)
     c.particle.resize(x.size());
     std::vector<int> next(c.start.begin(), c.start.end() - 1);
     for (std::size_t k = 0; k < x.size(); ++k) c.particle[next[home[k]]++] = static_cast<int>(k);
+    for (int k : c.particle) {
+        c.x.push_back(x[k].x());
+        c.y.push_back(x[k].y());
+        c.z.push_back(x[k].z());
+        c.radius.push_back(s.radius[k]);
+    }
     return c;
 }
 
-double cutoff(const State& s, int i, int j, double range, double skin)
+std::vector<Candidate> all_close_pairs(const State& s, double factor, double skin)
 {
-    return (s.radius[i] + s.radius[j]) * (1 + range / 2) + skin;
-}
-
-void take_if_close(const State& s, int i, int j, double range, double skin,
-                   std::vector<Candidate>& found)
-{
-    const Vec3 d = separation(s.box, s.position[i], s.position[j]).d;
-    const double c = cutoff(s, i, j, range, skin);
-    if (d.squaredNorm() < c * c) found.push_back({i, j});
-}
-
-std::vector<Candidate> all_close_pairs(const State& s, double range, double skin)
-{
+    const Images images(s.box);
     std::vector<Candidate> found;
     for (int i = 0; i < s.size(); ++i)
-        for (int j = i + 1; j < s.size(); ++j) take_if_close(s, i, j, range, skin, found);
+        for (int j = i + 1; j < s.size(); ++j) {
+            const Vec3 d = images.separation(s.position[i], s.position[j]).d;
+            const double c = (s.radius[i] + s.radius[j]) * factor + skin;
+            if (d.squaredNorm() < c * c) found.push_back({i, j});
+        }
     return found;
 }
+
+// How far a range of particles in cells lies beyond the cutoff from a point [a^2].
+SIGMAFLOW_HOT void excess_distances(const Cells& c, int begin, int end, const Vec3& from,
+                                    double radius, double factor, double skin, double* excess)
+{
+    const double *x = c.x.data(), *y = c.y.data(), *z = c.z.data(), *r = c.radius.data();
+    for (int k = begin; k < end; ++k) {
+        const double dx = x[k] - from.x(), dy = y[k] - from.y(), dz = z[k] - from.z();
+        const double cutoff = (radius + r[k]) * factor + skin;
+        excess[k - begin] = dx * dx + dy * dy + dz * dz - cutoff * cutoff;
+    }
+}
+
+/// Finds the partners j > i of one particle after another.
+class PartnerSearch {
+public:
+    PartnerSearch(const Box& box, const Cells& cells, double reach, double factor, double skin)
+        : box_(box), cells_(cells), reach_(reach), factor_(factor), skin_(skin)
+    {
+        excess_.resize(cells.particle.size());
+    }
+
+    void append(int i, const Vec3& x, double radius, std::vector<Candidate>& found)
+    {
+        partners_.clear();
+        const double width = box_.length.x() / cells_.nx;
+        const int cy = cell_of(x.y(), box_.length.y(), cells_.ny);
+        const int cz = cell_of(x.z(), box_.length.z(), cells_.nz);
+        for (int row = cy - 1; row <= cy + 1; ++row) {
+            // the image of the row above is displaced by +offset, of the row below by -offset
+            const int image = row < 0 ? -1 : row >= cells_.ny ? 1 : 0;
+            Vec3 centre = x;
+            centre.x() -= image * box_.offset;
+            centre.y() -= image * box_.length.y();
+            const int first = static_cast<int>(std::floor((centre.x() - reach_) / width));
+            const int last =
+                std::min(static_cast<int>(std::floor((centre.x() + reach_) / width)),
+                         first + cells_.nx - 1);
+            for (int layer = cz - 1; layer <= cz + 1; ++layer) {
+                const int round = layer < 0 ? -1 : layer >= cells_.nz ? 1 : 0;
+                const int home = cells_.index(0, periodic(row, cells_.ny),
+                                              periodic(layer, cells_.nz));
+                Vec3 from = centre;
+                from.z() -= round * box_.length.z();
+                for (int column = first; column <= last;) {  // as far as cells lie in a line
+                    const int at = periodic(column, cells_.nx);
+                    const int count = std::min(cells_.nx - at, last - column + 1);
+                    from.x() = centre.x() - (column - at) / cells_.nx * box_.length.x();
+                    take(i, from, radius, cells_.start[home + at], cells_.start[home + at + count]);
+                    column += count;
+                }
+            }
+        }
+        std::sort(partners_.begin(), partners_.end());
+        for (int j : partners_) found.push_back({i, j});
+    }
+
+private:
+    void take(int i, const Vec3& from, double radius, int begin, int end)
+    {
+        excess_distances(cells_, begin, end, from, radius, factor_, skin_, excess_.data());
+        for (int k = begin; k < end; ++k)
+            if (excess_[k - begin] < 0 && cells_.particle[k] > i)
+                partners_.push_back(cells_.particle[k]);
+    }
+
+    const Box& box_;
+    const Cells& cells_;
+    double reach_, factor_, skin_;
+    std::vector<double> excess_;
+    std::vector<int> partners_;
+};
 
 double largest_radius(const State& s)
 {
@@ -85,59 +161,48 @@ double largest_radius(const State& s)
 
 }
 
-std::vector<Candidate> close_pairs(const State& state, double range, double skin)
+std::vector<Candidate> close_pairs(const State& state, double range, double skin, int threads)
 {
     if (state.radius.empty()) return {};
-    const double reach = largest_radius(state) * (2 + range) + skin;
+    const double reach = largest_radius(state) * (2 + range) + skin, factor = 1 + range / 2;
     Box box = state.box;
     std::vector<Vec3> x = state.position;
     wrap(box, x);
     const Cells cells = sort_into_cells(state, x, reach);
     // With fewer cells a neighbour cell would be met twice; such boxes hold few particles.
-    if (cells.nx < 4 || cells.ny < 3 || cells.nz < 3) return all_close_pairs(state, range, skin);
+    if (cells.nx < 4 || cells.ny < 3 || cells.nz < 3) return all_close_pairs(state, factor, skin);
 
-    const double width = box.length.x() / cells.nx;
-    std::vector<Candidate> found;
-    std::vector<int> partners;
-    for (int i = 0; i < state.size(); ++i) {
-        partners.clear();
-        const int cy = cell_of(x[i].y(), box.length.y(), cells.ny);
-        const int cz = cell_of(x[i].z(), box.length.z(), cells.nz);
-        for (int row = cy - 1; row <= cy + 1; ++row) {
-            // the image of the row above is displaced by +offset, of the row below by -offset
-            const double shift = row < 0 ? -box.offset : row >= cells.ny ? box.offset : 0.;
-            const double centre = x[i].x() - shift;
-            const int first = static_cast<int>(std::floor((centre - reach) / width));
-            const int last = std::min(static_cast<int>(std::floor((centre + reach) / width)),
-                                      first + cells.nx - 1);
-            for (int layer = cz - 1; layer <= cz + 1; ++layer)
-                for (int column = first; column <= last; ++column) {
-                    const int home =
-                        cells.index(periodic(column, cells.nx), periodic(row, cells.ny),
-                                    periodic(layer, cells.nz));
-                    for (int k = cells.start[home]; k < cells.start[home + 1]; ++k)
-                        if (cells.particle[k] > i) partners.push_back(cells.particle[k]);
-                }
-        }
-        std::sort(partners.begin(), partners.end());
-        for (int j : partners) take_if_close(state, i, j, range, skin, found);
-    }
+    std::vector<std::vector<Candidate>> parts(std::max(threads, 1));
+    with_team(threads, [&](const Team& team) {
+        PartnerSearch search(box, cells, reach, factor, skin);
+        std::vector<Candidate>& found = parts[team.rank];
+        const Range own = team.share(0, state.size());
+        found.reserve(static_cast<std::size_t>(own.end - own.begin) * 8);
+        for (int i = own.begin; i < own.end; ++i) search.append(i, x[i], state.radius[i], found);
+    });
+    std::vector<Candidate> found = std::move(parts[0]);
+    for (std::size_t k = 1; k < parts.size(); ++k)
+        found.insert(found.end(), parts[k].begin(), parts[k].end());
     return found;
 }
 
-bool NeighbourList::update(const State& state, double range)
+bool NeighbourList::update(const State& state, double range, int threads)
 {
     if (covers(state, range)) return false;
-    rebuild(state, range);
+    rebuild(state, range, threads);
     return true;
 }
 
-void NeighbourList::rebuild(const State& state, double range)
+void NeighbourList::rebuild(const State& state, double range, int threads)
 {
+    const bool follows = range == range_ && updates_ > 0;
+    skin_ = follows ? std::clamp(std::sqrt(rebuilding_cost * used_ / updates_), least_skin,
+                                 largest_skin)
+                    : first_skin;
     range_ = range;
-    skin_ = state.radius.empty() ? 0 : skin_in_radii * largest_radius(state);
+    updates_ = 0;
     reach_ = state.radius.empty() ? 0 : largest_radius(state) * (2 + range);
-    candidates_ = close_pairs(state, range, skin_);
+    candidates_ = close_pairs(state, range, skin_, threads);
     reference_.box = state.box;
     reference_.position = state.position;
     reference_.radius = state.radius;
@@ -146,7 +211,7 @@ void NeighbourList::rebuild(const State& state, double range)
 
 // A pair in range now had |d| <= (1 + |strain|)(reach + w_i + w_j) at the rebuild, w =
 // displacements relative to the affine motion since then.
-bool NeighbourList::covers(const State& state, double range) const
+bool NeighbourList::covers(const State& state, double range)
 {
     if (range != range_ || state.radius != reference_.radius ||
         state.box.length != reference_.box.length)
@@ -169,7 +234,9 @@ bool NeighbourList::covers(const State& state, double range) const
         }
     }
     const double now = reach_ + std::sqrt(first) + std::sqrt(second);
-    return (1 + std::abs(strain)) * now <= reach_ + skin_;
+    used_ = (1 + std::abs(strain)) * now - reach_;
+    ++updates_;
+    return used_ <= skin_;
 }
 
 void find_pairs(const State& s, double range, const NeighbourList& list, std::vector<Pair>& pairs)

@@ -3,8 +3,8 @@
 // NeighbourList holds the pairs i < j that lie, or may soon lie, within the interaction range:
 // those with centre distance below range + skin at the positions of its last rebuild. Between
 // rebuilds the particles may move; `update` knows from the largest non-affine displacements and the
-// strain whether a pair could have come into range unseen, and rebuilds then. Candidates are sorted
-// by (i, j).
+// strain whether a pair could have come into range unseen, and rebuilds then, with a skin that
+// follows from how fast the last one was used up. Candidates are sorted by (i, j).
 //
 // find_pairs: the candidates in range (xi < range), with nearest images, sorted by (i, j).
 // Cell list: Allen & Tildesley, Computer Simulation of Liquids (1987), section 5.3; sheared
@@ -35,23 +35,26 @@ struct Candidate {
 class NeighbourList {
 public:
     /// Makes the list valid for this state and range in xi. Returns true if it was rebuilt.
-    bool update(const State& state, double range);
+    bool update(const State& state, double range, int threads = 1);
 
     const std::vector<Candidate>& candidates() const { return candidates_; }
 
 private:
-    bool covers(const State& state, double range) const;
-    void rebuild(const State& state, double range);
+    bool covers(const State& state, double range);
+    void rebuild(const State& state, double range, int threads);
 
     std::vector<Candidate> candidates_;
     State reference_;    // positions, box and strain at the last rebuild; no contacts
     double range_ = -1;  // in xi
     double reach_ = 0;   // largest centre distance of interest [a]
     double skin_ = 0;    // [a]
+    double used_ = 0;    // of the skin, at the last update [a]
+    int updates_ = 0;    // since the last rebuild
 };
 
 /// All pairs i < j closer than `cutoff(a_i + a_j)` = (a_i + a_j)(1 + range/2) + skin, sorted.
-std::vector<Candidate> close_pairs(const State& state, double range, double skin);
+std::vector<Candidate> close_pairs(const State& state, double range, double skin,
+                                   int threads = 1);
 
 /// Replaces the content of `pairs`.
 void find_pairs(const State& state, double range, const NeighbourList& list,

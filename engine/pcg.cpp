@@ -8,7 +8,8 @@ namespace sigmaflow {
 
 namespace {
 
-constexpr int factor_lifetime = 10;  // solves; the factor hardly ages within so few steps
+constexpr int factor_lifetime = 10;  // solves at most
+constexpr int aged = 2;               // iterations more than with the fresh factor
 constexpr int most_iterations = 2000;
 constexpr int most_corrections = 40;
 constexpr double narrow_reduction = 1e-4;  // of the residual, by one correction in single precision
@@ -401,7 +402,9 @@ bool ConjugateGradients::solve(const ResistanceProblem& problem, const SlicedVec
             report.residual = own.residual;
         }
     });
+    if (age_ == 0) fresh_iterations_ = report.iterations;
     ++age_;
+    if (report.iterations >= fresh_iterations_ + aged) age_ = -1;
     return good;
 }
 

@@ -59,6 +59,7 @@ private:
 
     bool indefinite_ = false;  // a diagonal block of the matrix is not positive definite
     int age_ = -1;  // solves since the factor was made; -1: there is none
+    int fresh_iterations_ = 0;  // of the first solve with it
     std::vector<OwnGroup> upper_, lower_;
     std::vector<DiagonalSlice<d8>> diagonal_;
     std::vector<DiagonalSlice<f8>> narrow_diagonal_;

@@ -177,7 +177,7 @@ DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
     solve_columns(state, assemble_columns(state, d.evaluation), b, d);
     find_rate_and_stress(state, d);
     superpose(state, d);
-    complete(state, d.evaluation);
+    complete(state, b.threads, d.evaluation);
     b.history.remember(state.time, d.evaluation.nonaffine, d.evaluation.shear_rate);
     return d;
 }

@@ -46,16 +46,20 @@ struct Workspace::Buffers {
 
     // the configuration whose geometry the table holds
     std::vector<Vec3> position;
+    std::vector<double> radius;
     Box box;
+    double range = -1;
     bool located = false;
-    std::vector<int> touching;  // candidates, ascending
+    std::vector<int> touching;          // candidates, ascending
+    std::vector<Pair> touching_pairs;  // i < j
 
     std::vector<int> memory;                // contact of the state for each touching pair, or -1
     std::vector<Row> rows;                  // of positions or velocities, one a slot
     std::vector<D8> moment, affine;         // partial sums of the slices
     SlicedVector unit_load, fixed_load;     // per unit rate, rate free
     SlicedVector right, solution, other_solution;
-    Velocities guess, predicted;
+    Velocities guess, foreseen;
+    std::vector<ContactMotion> foreseen_motion;
     std::vector<Evaluation> spare;          // of earlier steps: their memory is used again
     std::array<State, 2> moved;             // stages of a step
     SolutionHistory history;
@@ -70,9 +74,6 @@ double interaction_range(const Model& model);
 
 /// Neighbours, geometry and touching pairs of a state: nothing if they are known.
 void locate(const State& state, const Model& model, Workspace::Buffers& buffers);
-
-/// The touching pair number k, i < j.
-Pair touching_pair(const State& state, const Workspace::Buffers& buffers, std::size_t k);
 
 /// Geometry, forces and resistance matrix of a state, in the buffers; contact forces also in the
 /// result. Springs act over the time `ahead` if there is one (implicit stages).
@@ -103,6 +104,6 @@ void solve_at_once(const State& state, const Loads& loads, SolutionHistory& hist
                    Workspace::Buffers& buffers, Evaluation& evaluation);
 
 /// Sets the slip velocities of the contacts; throws if a velocity is not finite.
-void complete(const State& state, Evaluation& evaluation);
+void complete(const State& state, int threads, Evaluation& evaluation);
 
 }
