@@ -422,7 +422,7 @@ void solve_twice(const State& s, const Loads& loads, Workspace& workspace, Evalu
 }
 
 void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
-                   Workspace::Buffers& b, Evaluation& e)
+                   Workspace::Buffers& b, Evaluation& e, double share)
 {
     history.guess(s.time, b.guess);
     if (b.guess.empty())
@@ -432,12 +432,13 @@ void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
     if (const auto* rate = std::get_if<ImposedRate>(&e.control)) {
         e.shear_rate = rate->value;
         combine(b.fixed_load, rate->value, b.unit_load, b.right);
-        e.solve = b.solver.solve({b.matrix}, b.right, b.solution);
+        e.solve = b.solver.solve({b.matrix}, b.right, b.solution, share);
     } else {
         const double free =
             std::get<ImposedStress>(e.control).value * s.box.volume() - loads.first_moment;
         combine(b.fixed_load, free / loads.affine, b.unit_load, b.right);
-        e.solve = b.solver.solve({b.matrix, &b.unit_load, 1 / loads.affine}, b.right, b.solution);
+        e.solve = b.solver.solve({b.matrix, &b.unit_load, 1 / loads.affine}, b.right, b.solution,
+                                 share);
         e.shear_rate = (free + dot(b.unit_load, b.solution)) / loads.affine;
     }
     from_slices(b.solution, b.slices, e.nonaffine);

@@ -158,6 +158,26 @@ struct PowerBalance {
 };
 PowerBalance power_balance(const State& state, const DetailedEvaluation& detailed);
 
+/// The stress as a sample has it: total, and the shear components by origin.
+struct StressSummary {
+    Mat3 total = Mat3::Zero();
+    double solvent = 0, hydrodynamic = 0, contact = 0, repulsion = 0;
+};
+
+StressSummary summary_of(const DetailedEvaluation& detailed);
+
+/// An evaluation with the stress, at a fraction of the cost of evaluate_in_detail and accurate to
+/// 1e-7: one solution for the velocities and one for R_FU^-1 f, f = R_FE:Ehat. By reciprocity the
+/// shear stress of the velocities that a force F drives is - F.R_FU^-1 f/V, so that no force needs a
+/// solution of its own. The dashpot variant, which is not reciprocal, is evaluated in detail.
+struct SampledEvaluation {
+    Evaluation evaluation;
+    StressSummary stress;
+};
+SampledEvaluation evaluate_sample(const State& state, const Model& model, const Control& control,
+                                  Workspace& workspace);
+
+Sample make_sample(const State& state, const SampledEvaluation& sampled);
 Sample make_sample(const State& state, const DetailedEvaluation& detailed);
 Frame make_frame(const State& state, const DetailedEvaluation& detailed);
 

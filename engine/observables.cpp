@@ -134,16 +134,12 @@ std::span<const SampleField> sample_fields()
     return fields;
 }
 
-Sample make_sample(const State& state, const DetailedEvaluation& d)
+namespace {
+
+Sample sample_of(const State& state, const Evaluation& e, const StressSummary& stress)
 {
-    const Evaluation& e = d.evaluation;
+    const Mat3& S = stress.total;
     Sample s;
-    const Mat3 S = d.total_stress();
-    auto shear = [&](std::initializer_list<StressPart> parts) {
-        double sum = 0;
-        for (StressPart p : parts) sum += d.stress[p](flow, gradient);
-        return sum;
-    };
     s.strain = state.strain;
     s.time = state.time;
     s.shear_rate = e.shear_rate;
@@ -152,10 +148,10 @@ Sample make_sample(const State& state, const DetailedEvaluation& d)
     s.normal_stress_difference_1 = S(0, 0) - S(1, 1);
     s.normal_stress_difference_2 = S(1, 1) - S(2, 2);
     s.particle_pressure = -S.trace() / 3;
-    s.stress_solvent = shear({solvent});
-    s.stress_hydrodynamic = shear({hydro_RSE, hydro_RSU, dashpot_RSU, dashpot_xF});
-    s.stress_contact = shear({contact_xF, contact_RSU});
-    s.stress_repulsion = shear({repulsion_xF, repulsion_RSU});
+    s.stress_solvent = stress.solvent;
+    s.stress_hydrodynamic = stress.hydrodynamic;
+    s.stress_contact = stress.contact;
+    s.stress_repulsion = stress.repulsion;
     int frictional = 0, sliding = 0;
     for (const ContactLoad& c : e.contacts) {
         frictional += c.frictional;
@@ -171,6 +167,18 @@ Sample make_sample(const State& state, const DetailedEvaluation& d)
     for (int i = 0; i < state.size(); ++i) speed += nonaffine_speed(e, i);
     s.mean_nonaffine_speed = speed / n;
     return s;
+}
+
+}
+
+Sample make_sample(const State& state, const SampledEvaluation& s)
+{
+    return sample_of(state, s.evaluation, s.stress);
+}
+
+Sample make_sample(const State& state, const DetailedEvaluation& d)
+{
+    return sample_of(state, d.evaluation, summary_of(d));
 }
 
 Frame make_frame(const State& state, const DetailedEvaluation& d)

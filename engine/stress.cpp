@@ -3,6 +3,7 @@
 #include "engine/evaluation.h"
 #include "engine/workspace.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sigmaflow {
@@ -180,6 +181,95 @@ DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
     complete(state, b.threads, d.evaluation);
     b.history.remember(state.time, d.evaluation.nonaffine, d.evaluation.shear_rate);
     return d;
+}
+
+namespace {
+
+constexpr double sample_tolerance = 1e-8;
+
+// Work of a pair's load at velocities.
+double work(const PairLoad& load, const Pair& pair, const Velocities& v)
+{
+    return load.force_i.dot(v[pair.i].head<3>()) + load.torque_i.dot(v[pair.i].tail<3>()) +
+           load.force_j.dot(v[pair.j].head<3>()) + load.torque_j.dot(v[pair.j].tail<3>());
+}
+
+// Total stress from the velocities, and its shear components by origin from those of the flow alone.
+StressSummary summarise(const State& s, const Evaluation& e, const Velocities& hydrodynamic)
+{
+    StressSummary sum;
+    const Mat3 E = e.shear_rate * unit_strain_rate();
+    Mat3 lubrication = Mat3::Zero();
+    const auto add_force = [&](const Pair& pair, const PairLoad& load, double& part) {
+        const Mat3 moment = sym(pair.separation, load.force_i);
+        sum.total += moment;
+        part += moment(flow, gradient) - work(load, pair, hydrodynamic);
+    };
+    for (const PairState& p : e.pairs) {
+        if (p.repulsion != 0) {
+            const Vec3 force = -p.repulsion * p.pair.normal;
+            add_force(p.pair, {force, Vec3::Zero(), -force, Vec3::Zero()}, sum.repulsion);
+        }
+        if (p.factors.L == 0) continue;
+        const auto r = resistance(s, p);
+        const PairStresslet flow_part = lubrication::strain_stresslet(r, p.pair.normal, E);
+        lubrication += sum_of(flow_part) +
+                       sum_of(lubrication::velocity_stresslet(r, p.pair.normal,
+                                                              e.nonaffine[p.pair.i],
+                                                              e.nonaffine[p.pair.j]));
+        sum.hydrodynamic +=
+            sum_of(flow_part)(flow, gradient) -
+            work(lubrication::strain_load(r, p.pair.normal, E), p.pair, hydrodynamic);
+    }
+    for (const ContactLoad& c : e.contacts)
+        add_force(c.pair, {c.force_on_i, c.torque_on_i, -c.force_on_i, c.torque_on_j}, sum.contact);
+    const double volume = s.box.volume();
+    sum.solvent = solvent_resistance(s, e.model) * e.shear_rate / volume;
+    sum.total = (sum.total + lubrication) / volume + 2 * sum.solvent * unit_strain_rate();
+    sum.hydrodynamic /= volume;
+    sum.contact /= volume;
+    sum.repulsion /= volume;
+    return sum;
+}
+
+}
+
+StressSummary summary_of(const DetailedEvaluation& d)
+{
+    const auto shear = [&](StressPart p) { return d.stress[p](flow, gradient); };
+    return {d.total_stress(), shear(solvent),
+            shear(hydro_RSE) + shear(hydro_RSU) + shear(dashpot_RSU) + shear(dashpot_xF),
+            shear(contact_xF) + shear(contact_RSU), shear(repulsion_xF) + shear(repulsion_RSU)};
+}
+
+SampledEvaluation evaluate_sample(const State& state, const Model& model, const Control& control,
+                                  Workspace& workspace)
+{
+    if (uses_dashpot(model)) {
+        DetailedEvaluation d = evaluate_in_detail(state, model, control, workspace);
+        const StressSummary stress = summary_of(d);
+        return {std::move(d.evaluation), stress};
+    }
+    Workspace::Buffers& b = workspace.buffers();
+    const double share = std::min(1., sample_tolerance / b.tolerance);
+    SampledEvaluation result{prepare(state, model, control, nullptr, b), {}};
+    Evaluation& e = result.evaluation;
+    solve_at_once(state, assemble_loads(state, e, b), b.history, b, e, share);
+    if (b.hydrodynamic.size() == state.position.size())
+        to_slices(b.hydrodynamic, b.slices, b.other_solution);
+    else
+        b.other_solution.clear();
+    const SolveReport flow_alone =
+        b.solver.solve({b.matrix}, b.unit_load, b.other_solution, share);
+    e.solve.iterations += flow_alone.iterations;
+    e.solve.residual = std::max(e.solve.residual, flow_alone.residual);
+    e.solve.fell_back = e.solve.fell_back || flow_alone.fell_back;
+    from_slices(b.other_solution, b.slices, b.hydrodynamic);
+    if (!model.background_drag) remove_drift(state, b.hydrodynamic);
+    complete(state, b.threads, e);
+    list_pairs(state, e, workspace);
+    result.stress = summarise(state, e, b.hydrodynamic);
+    return result;
 }
 
 std::vector<Mat3> particle_stress(const State& state, const DetailedEvaluation& d)

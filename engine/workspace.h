@@ -33,7 +33,7 @@ struct alignas(64) Row {
 };
 
 struct Workspace::Buffers {
-    explicit Buffers(const SolverSettings& settings) : solver(settings), threads(settings.threads)
+    explicit Buffers(const SolverSettings& settings) : solver(settings), tolerance(settings.tolerance), threads(settings.threads)
     {
     }
 
@@ -42,6 +42,7 @@ struct Workspace::Buffers {
     PairTable table;
     ResistanceMatrix matrix;
     ResistanceSolver solver;
+    double tolerance;
     int threads;
 
     // the configuration whose geometry the table holds
@@ -58,7 +59,7 @@ struct Workspace::Buffers {
     std::vector<D8> moment, affine;         // partial sums of the slices
     SlicedVector unit_load, fixed_load;     // per unit rate, rate free
     SlicedVector right, solution, other_solution;
-    Velocities guess, foreseen;
+    Velocities guess, foreseen, hydrodynamic;  // the last one: R_FU^-1 f of the last sample
     std::vector<ContactMotion> foreseen_motion;
     std::vector<Evaluation> spare;          // of earlier steps: their memory is used again
     std::array<State, 2> moved;             // stages of a step
@@ -99,9 +100,10 @@ struct Loads {
 };
 Loads assemble_loads(const State& state, const Evaluation& evaluation, Workspace::Buffers& buffers);
 
-/// One solve: at an imposed rate, or by the rank-one form of stress control.
+/// One solve: at an imposed rate, or by the rank-one form of stress control. `share` of the
+/// tolerance.
 void solve_at_once(const State& state, const Loads& loads, SolutionHistory& history,
-                   Workspace::Buffers& buffers, Evaluation& evaluation);
+                   Workspace::Buffers& buffers, Evaluation& evaluation, double share = 1);
 
 /// Sets the slip velocities of the contacts; throws if a velocity is not finite.
 void complete(const State& state, int threads, Evaluation& evaluation);

@@ -45,6 +45,11 @@ void run_command(int argc, char** argv)
         "--out", out,
         "folder for the results, default out/<name of the workflow file>. An earlier run "
         "of the same workflow in it is replaced, any other folder must be empty");
+    run->add_option("--threads", options.threads,
+                    "threads of each evaluation, worth it from some thousand particles on; results "
+                    "do not depend on it")
+        ->check(CLI::Range(1, 256))
+        ->default_val(1);
     run->add_flag("-q,--quiet", options.quiet, "no progress, only results and errors");
     CLI::App* evaluate = app.add_subcommand("evaluate", "evaluate one configuration, print JSON");
     evaluate->add_option("CASE.json", case_file, "the configuration")->required();

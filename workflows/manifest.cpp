@@ -77,7 +77,8 @@ std::string utc_now()
     return text.data();
 }
 
-Manifest::Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file)
+Manifest::Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file,
+                   int threads)
 {
     content_["sigmaflow"] = version();
     content_["status"] = "running";
@@ -88,6 +89,7 @@ Manifest::Manifest(const Workflow& workflow, const std::filesystem::path& workfl
     content_["host"] = host_name();
     content_["processor"] = processor();
     content_["cores"] = std::thread::hardware_concurrency();
+    content_["threads"] = threads;
     content_["compiler"] = SIGMAFLOW_COMPILER;
     content_["libraries"] = library_versions();
     content_["workflow"] = workflow.resolved();

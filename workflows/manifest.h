@@ -19,7 +19,7 @@ std::string utc_now();
 
 class Manifest {
 public:
-    Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file);
+    Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file, int threads);
 
     void add_step(const Step& step, double wall_seconds);
     /// Status: running, complete, pictures missing, failed. Errors: file, no_space.

@@ -62,7 +62,7 @@ void run_workflow(const RunOptions& options, std::ostream& results)
     RunFolder folder(options.out.value_or(std::filesystem::path("out") / options.workflow.stem()),
                      workflow.name);
     Progress progress = Progress::for_stderr(options.quiet);
-    Manifest manifest(workflow, options.workflow);
+    Manifest manifest(workflow, options.workflow, options.threads);
     manifest.write(folder, "running");
     progress.note("writing to " + folder.path().string() +
                   (folder.replaces_earlier_run() ? ", in place of an earlier run" : ""));
@@ -70,6 +70,7 @@ void run_workflow(const RunOptions& options, std::ostream& results)
                     .provenance = provenance_of(workflow),
                     .folder = folder,
                     .progress = progress,
+                    .threads = options.threads,
                     .state = {},
                     .runs = {},
                     .last_run = {},

@@ -10,6 +10,7 @@ struct RunOptions {
     std::filesystem::path workflow;            // the JSON file
     std::optional<std::filesystem::path> out;  // default: out/<name of the file>
     bool quiet = false;                        // no progress on stderr
+    int threads = 1;                           // results do not depend on it
 };
 
 /// Runs the workflow and prints a short table of results. manifest.json and summary.json are

@@ -58,15 +58,20 @@ void ShearingParameters::describe(io::Fields& f)
     f("rate", rate, io::above_to(0, 1e9), "rate0", "imposed shear rate; either this or stress");
     f("scheme", scheme,
       io::Words<Scheme>{
-          {"heun", Scheme::heun}, {"euler", Scheme::euler}, {"implicit", Scheme::implicit}},
-      "time stepping: predictor-corrector, Euler, or implicit contact springs (longer steps)");
+          {"implicit", Scheme::implicit}, {"heun", Scheme::heun}, {"euler", Scheme::euler}},
+      "time stepping: implicit contact springs (long steps), predictor-corrector, or Euler; the "
+      "dashpot variant needs one of the last two");
     f("displacement", displacement, io::above_to(0, 0.1), "a",
-      "nothing moves by more than this in one step; default: 0.001, implicit 0.005");
-    f("solver", solver.kind,
-      io::Words<SolverKind>{{"pcg", SolverKind::pcg}, {"cholesky", SolverKind::cholesky}},
-      "resistance problem: preconditioned conjugate gradients, or a direct factorisation");
-    f("solver_tolerance", solver.tolerance, io::between(1e-12, 1e-2), "-",
-      "relative residual at which pcg stops; the error of the shear rate is far smaller");
+      "nothing moves by more than this in one step; default: 0.01, heun and euler 0.001");
+    f("solver", solver,
+      io::Words<SolverKind>{{"pcg", SolverKind::pcg},
+                            {"cholesky", SolverKind::cholesky},
+                            {"lagged_cholesky", SolverKind::lagged_cholesky}},
+      "resistance problem: conjugate gradients preconditioned by an incomplete factor, a direct "
+      "factorisation, or conjugate gradients preconditioned by an earlier factorisation");
+    f("solver_tolerance", solver_tolerance, io::between(1e-12, 1e-2), "-",
+      "relative residual at which an iteration of a step stops; the error of the shear rate is far "
+      "smaller, and samples are solved to 1e-8; default: 0.001, heun and euler 1e-5");
     f("series_interval", series_interval, io::between(1e-6, 1e3), "strain",
       "strain between two rows of the time series");
     f("maximum_time", maximum_time, io::above(0), "1/rate0",
@@ -80,18 +85,20 @@ Control ShearingParameters::check(const io::JsonNode& node, const Plan& plan, do
     const Control control = io::checked_control(stress, rate, model, node);
     if (scheme == Scheme::implicit && model.contact_hydrodynamics == ContactHydrodynamics::dashpot)
         throw node.error_at_key("scheme",
-                                "\"implicit\" needs contact_hydrodynamics \"lubrication\"");
+                                "\"implicit\" (the default) needs contact_hydrodynamics "
+                                "\"lubrication\"; \"heun\" can do \"dashpot\"");
     if (strain / series_interval > most_outputs)
         throw node.error_at_key("series_interval", "gives more than 1e7 rows, the strain is " +
                                                        io::number_text(strain));
     return control;
 }
 
-ShearingTask ShearingParameters::task(double strain, double frame_interval) const
+ShearingTask ShearingParameters::task(double strain, double frame_interval, int threads) const
 {
+    const bool long_steps = scheme == Scheme::implicit;
     return {.control = rate ? Control(ImposedRate{*rate}) : Control(ImposedStress{*stress}),
-            .stepping = {scheme, displacement.value_or(scheme == Scheme::implicit ? 5e-3 : 1e-3)},
-            .solver = solver,
+            .stepping = {scheme, displacement.value_or(long_steps ? 1e-2 : 1e-3)},
+            .solver = {solver, solver_tolerance.value_or(long_steps ? 1e-3 : 1e-5), threads},
             .strain = strain,
             .time = time_limit(strain),
             .series_interval = series_interval,
@@ -142,10 +149,15 @@ public:
         has_sample_ = has_frame_ = false;
         if (!on_grid && !frame && !last_) return std::nullopt;
 
+        if (!frame && !last_) {
+            SampledEvaluation sampled = evaluate_sample(state, model, task_.control, workspace);
+            write_sample(make_sample(state, sampled), on_grid);
+            if (!last_) return std::move(sampled.evaluation);
+        }
         DetailedEvaluation detailed = evaluate_in_detail(state, model, task_.control, workspace);
-        if (on_grid || last_) write_sample(state, detailed, on_grid);
-        if (on_grid && output_.enough && output_.enough()) last_ = true;
-        if (frame || last_) write_frame(state, detailed);
+        if (!has_sample_ && (on_grid || last_))
+            write_sample(make_sample(state, detailed), on_grid);
+        write_frame(state, detailed);
         return std::move(detailed.evaluation);
     }
 
@@ -155,7 +167,7 @@ public:
         if (has_sample_ && has_frame_) return;
         const DetailedEvaluation detailed =
             evaluate_in_detail(state, model, task_.control, workspace);
-        if (!has_sample_) write_sample(state, detailed, false);
+        if (!has_sample_) write_sample(make_sample(state, detailed), false);
         if (!has_frame_) write_frame(state, detailed);
     }
 
@@ -163,10 +175,11 @@ public:
     bool arrived() const { return arrived_; }
 
 private:
-    void write_sample(const State& state, const DetailedEvaluation& detailed, bool on_grid)
+    void write_sample(const Sample& sample, bool on_grid)
     {
-        output_.sample(make_sample(state, detailed), on_grid);
+        output_.sample(sample, on_grid);
         has_sample_ = true;
+        if (on_grid && output_.enough && output_.enough()) last_ = true;
     }
     void write_frame(const State& state, const DetailedEvaluation& detailed)
     {

@@ -28,9 +28,10 @@ struct ShearingTask {
 /// Parameters that every shearing step has.
 struct ShearingParameters {
     std::optional<double> stress, rate;
-    Scheme scheme = Scheme::heun;
+    Scheme scheme = Scheme::implicit;
     std::optional<double> displacement;
-    SolverSettings solver;
+    SolverKind solver = SolverKind::pcg;
+    std::optional<double> solver_tolerance;
     double series_interval = 0.01;
     std::optional<double> maximum_time;
 
@@ -41,7 +42,7 @@ struct ShearingParameters {
     /// takes at a viscosity of 1e5 eta0 (stress control), or a little more than it takes (rate
     /// control).
     double time_limit(double strain) const;
-    ShearingTask task(double strain, double frame_interval) const;
+    ShearingTask task(double strain, double frame_interval, int threads) const;
 };
 
 /// flowing: reached its strain; jammed: engine/jamming.h; undecided: ran out of time. A jammed
@@ -57,7 +58,7 @@ struct ShearingOutput {
     std::function<bool()> enough;  // asked after each sample; true ends the run
 };
 
-/// What the solver needed; direct solutions of outputs are not counted.
+/// What the solver needed in the steps; solutions for outputs are not counted.
 struct SolverStatistics {
     double iterations = 0;
     double largest_residual = 0;

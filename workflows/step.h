@@ -66,6 +66,7 @@ struct Context {
     io::Provenance provenance;
     RunFolder& folder;
     Progress& progress;
+    int threads = 1;  // of each evaluation
 
     State state;
     std::vector<Run> runs;

@@ -56,7 +56,7 @@ TEST(Workflow, ResolvedParametersHoldWhatTheFileSaysAndTheDefaultsOfTheRest)
     EXPECT_EQ(resolved["suspension"]["model"]["contact_hydrodynamics"], "dashpot");
     EXPECT_EQ(resolved["suspension"]["model"]["debye_length"], 0.02);
     EXPECT_EQ(resolved["steps"][1]["stress"], 0.1);
-    EXPECT_EQ(resolved["steps"][1]["scheme"], "heun");
+    EXPECT_EQ(resolved["steps"][1]["scheme"], "implicit");
     EXPECT_FALSE(resolved["steps"][1].contains("rate"));
 }
 

@@ -65,7 +65,7 @@ struct Equilibrate {
 
     void run(Context& context) const
     {
-        const ShearingTask task = shearing.task(maximum_strain, 0);
+        const ShearingTask task = shearing.task(maximum_strain, 0, context.threads);
         RunFiles files(context, task.control);
         bool stationary = false;
         double last_rate = 0;

@@ -33,7 +33,7 @@ struct Shear {
 
     void run(Context& context) const
     {
-        const ShearingTask task = shearing.task(strain, frame_interval);
+        const ShearingTask task = shearing.task(strain, frame_interval, context.threads);
         const Control& control = task.control;
         RunFiles files(context, control);
         const ShearingOutput output{
