@@ -98,7 +98,7 @@ void make_pattern(const State& s, Workspace::Buffers& b)
 {
     const auto& candidates = b.neighbours.candidates();
     b.solver.set_pattern(s.size(), candidates);
-    b.slices = make_slices(s, candidates);
+    b.slice_maker.make(s, candidates, b.slices);
     make_shapes(s, b.slices, b.table);
     const std::size_t count = b.slices.count + 1;
     b.matrix.slices = &b.slices;

@@ -17,15 +17,6 @@ namespace {
 constexpr double rebuilding_cost = 2;  // in evaluations, times a third of the reach [a]
 constexpr double first_skin = 0.1, least_skin = 0.02, largest_skin = 0.4;  // [a]
 
-/// Cells of at least the reach in y and z, and in x; the particles cell by cell.
-struct Cells {
-    int nx, ny, nz;
-    std::vector<int> start, particle;
-    std::vector<double> x, y, z, radius;  // of the particles in this order
-
-    int index(int cx, int cy, int cz) const { return (cz * ny + cy) * nx + cx; }
-};
-
 int periodic(int c, int n)
 {
     const int r = c % n;
@@ -37,9 +28,10 @@ int cell_of(double x, double length, int n)
     return std::min(n - 1, static_cast<int>(x / length * n));
 }
 
-Cells sort_into_cells(const State& s, const std::vector<Vec3>& x, double reach)
+// wrapped: the positions in the box
+void sort_into_cells(const State& s, double reach, Cells& c)
 {
-    Cells c;
+    const std::vector<Vec3>& x = c.wrapped;
     // more cells than particles would cost more to visit than they save
     const int limit = std::max(1, static_cast<int>(std::cbrt(s.size())) * 2 + 1);
     auto count = [&](double length) {
@@ -48,38 +40,37 @@ Cells sort_into_cells(const State& s, const std::vector<Vec3>& x, double reach)
     c.nx = count(s.box.length.x());
     c.ny = count(s.box.length.y());
     c.nz = count(s.box.length.z());
-    std::vector<int> home(x.size());
+    c.home.resize(x.size());
     c.start.assign(static_cast<std::size_t>(c.nx) * c.ny * c.nz + 1, 0);
     for (std::size_t k = 0; k < x.size(); ++k) {
-        home[k] = c.index(cell_of(x[k].x(), s.box.length.x(), c.nx),
-                          cell_of(x[k].y(), s.box.length.y(), c.ny),
-                          cell_of(x[k].z(), s.box.length.z(), c.nz));
-        ++c.start[home[k] + 1];
+        c.home[k] = c.index(cell_of(x[k].x(), s.box.length.x(), c.nx),
+                            cell_of(x[k].y(), s.box.length.y(), c.ny),
+                            cell_of(x[k].z(), s.box.length.z(), c.nz));
+        ++c.start[c.home[k] + 1];
     }
     for (std::size_t k = 1; k < c.start.size(); ++k) c.start[k] += c.start[k - 1];
+    c.next.assign(c.start.begin(), c.start.end() - 1);
+    for (auto* values : {&c.x, &c.y, &c.z, &c.radius}) values->resize(x.size());
     c.particle.resize(x.size());
-    std::vector<int> next(c.start.begin(), c.start.end() - 1);
-    for (std::size_t k = 0; k < x.size(); ++k) c.particle[next[home[k]]++] = static_cast<int>(k);
-    for (int k : c.particle) {
-        c.x.push_back(x[k].x());
-        c.y.push_back(x[k].y());
-        c.z.push_back(x[k].z());
-        c.radius.push_back(s.radius[k]);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const int at = c.next[c.home[k]]++;
+        c.particle[at] = static_cast<int>(k);
+        c.x[at] = x[k].x();
+        c.y[at] = x[k].y();
+        c.z[at] = x[k].z();
+        c.radius[at] = s.radius[k];
     }
-    return c;
 }
 
-std::vector<Candidate> all_close_pairs(const State& s, double factor, double skin)
+void all_close_pairs(const State& s, double factor, double skin, std::vector<Candidate>& found)
 {
     const Images images(s.box);
-    std::vector<Candidate> found;
     for (int i = 0; i < s.size(); ++i)
         for (int j = i + 1; j < s.size(); ++j) {
             const Vec3 d = images.separation(s.position[i], s.position[j]).d;
             const double c = (s.radius[i] + s.radius[j]) * factor + skin;
             if (d.squaredNorm() < c * c) found.push_back({i, j});
         }
-    return found;
 }
 
 // How far a range of particles in cells lies beyond the cutoff from a point [a^2].
@@ -97,15 +88,17 @@ SIGMAFLOW_HOT void excess_distances(const Cells& c, int begin, int end, const Ve
 /// Finds the partners j > i of one particle after another.
 class PartnerSearch {
 public:
-    PartnerSearch(const Box& box, const Cells& cells, double reach, double factor, double skin)
-        : box_(box), cells_(cells), reach_(reach), factor_(factor), skin_(skin)
+    PartnerSearch(const Box& box, const Cells& cells, double reach, double factor, double skin,
+                  PairSearch::Part& part)
+        : box_(box), cells_(cells), reach_(reach), factor_(factor), skin_(skin), part_(part)
     {
-        excess_.resize(cells.particle.size());
+        part_.excess.resize(cells.particle.size());
+        part_.found.clear();
     }
 
-    void append(int i, const Vec3& x, double radius, std::vector<Candidate>& found)
+    void append(int i, const Vec3& x, double radius)
     {
-        partners_.clear();
+        part_.partners.clear();
         const double width = box_.length.x() / cells_.nx;
         const int cy = cell_of(x.y(), box_.length.y(), cells_.ny);
         const int cz = cell_of(x.z(), box_.length.z(), cells_.nz);
@@ -134,24 +127,24 @@ public:
                 }
             }
         }
-        std::sort(partners_.begin(), partners_.end());
-        for (int j : partners_) found.push_back({i, j});
+        std::sort(part_.partners.begin(), part_.partners.end());
+        for (int j : part_.partners) part_.found.push_back({i, j});
     }
 
 private:
     void take(int i, const Vec3& from, double radius, int begin, int end)
     {
-        excess_distances(cells_, begin, end, from, radius, factor_, skin_, excess_.data());
+        excess_distances(cells_, begin, end, from, radius, factor_, skin_,
+                         part_.excess.data());
         for (int k = begin; k < end; ++k)
-            if (excess_[k - begin] < 0 && cells_.particle[k] > i)
-                partners_.push_back(cells_.particle[k]);
+            if (part_.excess[k - begin] < 0 && cells_.particle[k] > i)
+                part_.partners.push_back(cells_.particle[k]);
     }
 
     const Box& box_;
     const Cells& cells_;
     double reach_, factor_, skin_;
-    std::vector<double> excess_;
-    std::vector<int> partners_;
+    PairSearch::Part& part_;
 };
 
 double largest_radius(const State& s)
@@ -161,28 +154,37 @@ double largest_radius(const State& s)
 
 }
 
-std::vector<Candidate> close_pairs(const State& state, double range, double skin, int threads)
+void close_pairs(const State& state, double range, double skin, int threads, PairSearch& search,
+                 std::vector<Candidate>& found)
 {
-    if (state.radius.empty()) return {};
+    found.clear();
+    if (state.radius.empty()) return;
     const double reach = largest_radius(state) * (2 + range) + skin, factor = 1 + range / 2;
     Box box = state.box;
-    std::vector<Vec3> x = state.position;
-    wrap(box, x);
-    const Cells cells = sort_into_cells(state, x, reach);
+    Cells& cells = search.cells;
+    cells.wrapped = state.position;
+    wrap(box, cells.wrapped);
+    sort_into_cells(state, reach, cells);
     // With fewer cells a neighbour cell would be met twice; such boxes hold few particles.
-    if (cells.nx < 4 || cells.ny < 3 || cells.nz < 3) return all_close_pairs(state, factor, skin);
+    if (cells.nx < 4 || cells.ny < 3 || cells.nz < 3)
+        return all_close_pairs(state, factor, skin, found);
 
-    std::vector<std::vector<Candidate>> parts(std::max(threads, 1));
+    search.parts.resize(std::max(threads, 1));
     with_team(threads, [&](const Team& team) {
-        PartnerSearch search(box, cells, reach, factor, skin);
-        std::vector<Candidate>& found = parts[team.rank];
+        PartnerSearch partners(box, cells, reach, factor, skin, search.parts[team.rank]);
         const Range own = team.share(0, state.size());
-        found.reserve(static_cast<std::size_t>(own.end - own.begin) * 8);
-        for (int i = own.begin; i < own.end; ++i) search.append(i, x[i], state.radius[i], found);
+        for (int i = own.begin; i < own.end; ++i)
+            partners.append(i, cells.wrapped[i], state.radius[i]);
     });
-    std::vector<Candidate> found = std::move(parts[0]);
-    for (std::size_t k = 1; k < parts.size(); ++k)
-        found.insert(found.end(), parts[k].begin(), parts[k].end());
+    for (const PairSearch::Part& part : search.parts)
+        found.insert(found.end(), part.found.begin(), part.found.end());
+}
+
+std::vector<Candidate> close_pairs(const State& state, double range, double skin)
+{
+    PairSearch search;
+    std::vector<Candidate> found;
+    close_pairs(state, range, skin, 1, search, found);
     return found;
 }
 
@@ -202,7 +204,7 @@ void NeighbourList::rebuild(const State& state, double range, int threads)
     range_ = range;
     updates_ = 0;
     reach_ = state.radius.empty() ? 0 : largest_radius(state) * (2 + range);
-    candidates_ = close_pairs(state, range, skin_, threads);
+    close_pairs(state, range, skin_, threads, search_, candidates_);
     reference_.box = state.box;
     reference_.position = state.position;
     reference_.radius = state.radius;

@@ -32,6 +32,28 @@ struct Candidate {
     int i, j;
 };
 
+/// Cells of at least the reach in y and z, and in x; the particles cell by cell.
+struct Cells {
+    int nx = 0, ny = 0, nz = 0;
+    std::vector<int> start, particle;
+    std::vector<double> x, y, z, radius;  // of the particles in this order
+    std::vector<int> home, next;          // while they are sorted
+    std::vector<Vec3> wrapped;
+
+    int index(int cx, int cy, int cz) const { return (cz * ny + cy) * nx + cx; }
+};
+
+/// What the search for close pairs keeps from one time to the next; one part for each thread.
+struct PairSearch {
+    struct Part {
+        std::vector<Candidate> found;
+        std::vector<double> excess;
+        std::vector<int> partners;
+    };
+    Cells cells;
+    std::vector<Part> parts;
+};
+
 class NeighbourList {
 public:
     /// Makes the list valid for this state and range in xi. Returns true if it was rebuilt.
@@ -44,6 +66,7 @@ private:
     void rebuild(const State& state, double range, int threads);
 
     std::vector<Candidate> candidates_;
+    PairSearch search_;
     State reference_;    // positions, box and strain at the last rebuild; no contacts
     double range_ = -1;  // in xi
     double reach_ = 0;   // largest centre distance of interest [a]
@@ -53,8 +76,9 @@ private:
 };
 
 /// All pairs i < j closer than `cutoff(a_i + a_j)` = (a_i + a_j)(1 + range/2) + skin, sorted.
-std::vector<Candidate> close_pairs(const State& state, double range, double skin,
-                                   int threads = 1);
+std::vector<Candidate> close_pairs(const State& state, double range, double skin);
+void close_pairs(const State& state, double range, double skin, int threads, PairSearch& search,
+                 std::vector<Candidate>& found);
 
 /// Replaces the content of `pairs`.
 void find_pairs(const State& state, double range, const NeighbourList& list,

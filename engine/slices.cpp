@@ -1,69 +1,78 @@
 #include "engine/slices.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace sigmaflow {
 
-namespace {
-
-/// Neighbours of every particle, and which candidate each is.
-struct Graph {
-    std::vector<int> start, neighbour, candidate;
-};
-
-Graph graph_of(int n, const std::vector<Candidate>& candidates)
+void SliceMaker::connect(int n, const std::vector<Candidate>& candidates)
 {
-    Graph g;
+    Graph& g = graph_;
     g.start.assign(n + 1, 0);
     for (const auto [i, j] : candidates) {
         ++g.start[i + 1];
         ++g.start[j + 1];
     }
     for (int i = 0; i < n; ++i) g.start[i + 1] += g.start[i];
-    std::vector<int> next(g.start.begin(), g.start.end() - 1);
+    g.next.assign(g.start.begin(), g.start.end() - 1);
     g.neighbour.resize(2 * candidates.size());
     g.candidate.resize(2 * candidates.size());
     for (std::size_t k = 0; k < candidates.size(); ++k) {
         const auto [i, j] = candidates[k];
-        g.neighbour[next[i]] = j;
-        g.candidate[next[i]++] = static_cast<int>(k);
-        g.neighbour[next[j]] = i;
-        g.candidate[next[j]++] = static_cast<int>(k);
+        g.neighbour[g.next[i]] = j;
+        g.candidate[g.next[i]++] = static_cast<int>(k);
+        g.neighbour[g.next[j]] = i;
+        g.candidate[g.next[j]++] = static_cast<int>(k);
     }
-    return g;
 }
 
-// Along the gradient direction: the preconditioner then needs fewer iterations than in any order.
-std::vector<int> spatial_order(const State& s)
+// Along the gradient direction: the preconditioner needs the fewest iterations then.
+void SliceMaker::order_in_space(const State& s)
 {
-    std::vector<int> order(s.size());
-    for (int i = 0; i < s.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](int i, int j) {
+    order_.resize(s.size());
+    for (int i = 0; i < s.size(); ++i) order_[i] = i;
+    std::sort(order_.begin(), order_.end(), [&](int i, int j) {
         const double yi = s.position[i].y(), yj = s.position[j].y();
         return yi < yj || (yi == yj && i < j);
     });
-    return order;
 }
 
-std::vector<int> colours_of(const std::vector<int>& order, const Graph& g)
+// Greedy: the first colour that no neighbour has. Returns the number of colours.
+int SliceMaker::find_colours()
 {
-    std::vector<int> colour(order.size(), -1), used_by;
-    for (int i : order) {
-        for (int k = g.start[i]; k < g.start[i + 1]; ++k)
-            if (const int c = colour[g.neighbour[k]]; c >= 0) used_by[c] = i;
+    colour_.assign(order_.size(), -1);
+    used_by_.clear();
+    for (int i : order_) {
+        for (int k = graph_.start[i]; k < graph_.start[i + 1]; ++k)
+            if (const int c = colour_[graph_.neighbour[k]]; c >= 0) used_by_[c] = i;
+        const int colours = static_cast<int>(used_by_.size());
         int c = 0;
-        while (c < static_cast<int>(used_by.size()) && used_by[c] == i) ++c;
-        if (c == static_cast<int>(used_by.size())) used_by.push_back(-1);
-        colour[i] = c;
+        while (c < colours && used_by_[c] == i) ++c;
+        if (c == colours) used_by_.push_back(-1);
+        colour_[i] = c;
     }
-    return colour;
+    return static_cast<int>(used_by_.size());
 }
 
-/// Pairs of the lanes of one slice, filled up to the longest.
-template <class Emit>
-int emit_groups(const std::array<std::vector<std::array<int, 2>>, lanes>& lists, const Emit& emit)
+// Earlier or later neighbours of the lanes of one slice.
+void SliceMaker::find_neighbours(const Slices& s, int slice, bool later)
+{
+    for (int l = 0; l < lanes; ++l) {
+        lists_[l].clear();
+        const int own = slice * lanes + l, i = s.particle[own];
+        if (i < 0) continue;
+        for (int k = graph_.start[i]; k < graph_.start[i + 1]; ++k) {
+            const int other = s.slot[graph_.neighbour[k]];
+            if ((other > own) == later) lists_[l].push_back({other, graph_.candidate[k]});
+        }
+        std::sort(lists_[l].begin(), lists_[l].end());
+    }
+}
+
+namespace {
+
+// emit(lane, entry or null) for all lanes, filled up to the longest list; returns its length.
+template <class Lists, class Emit>
+int emit_groups(const Lists& lists, const Emit& emit)
 {
     std::size_t longest = 0;
     for (const auto& list : lists) longest = std::max(longest, list.size());
@@ -74,38 +83,37 @@ int emit_groups(const std::array<std::vector<std::array<int, 2>>, lanes>& lists,
 
 }
 
-Slices make_slices(const State& state, const std::vector<Candidate>& candidates)
+void SliceMaker::make(const State& state, const std::vector<Candidate>& candidates, Slices& s)
 {
-    Slices s;
     const int n = state.size();
     s.particles = n;
-    const Graph g = graph_of(n, candidates);
-    const std::vector<int> order = spatial_order(state);
-    const std::vector<int> colour = colours_of(order, g);
-    const int colours = n > 0 ? *std::max_element(colour.begin(), colour.end()) + 1 : 0;
+    connect(n, candidates);
+    order_in_space(state);
+    const int colours = find_colours();
 
-    // earlier and later neighbours; lanes of one slice should have about as many of both
-    std::vector<std::array<int, 2>> degree(n, {0, 0});
+    // lanes of one slice should have about as many earlier and later neighbours
+    degree_.assign(n, {0, 0});
     for (const auto [i, j] : candidates) {
-        ++degree[i][colour[j] > colour[i]];
-        ++degree[j][colour[i] > colour[j]];
+        ++degree_[i][colour_[j] > colour_[i]];
+        ++degree_[j][colour_[i] > colour_[j]];
     }
     // neighbours in memory should be neighbours in space, and members of a team have different parts
     const int block = std::clamp(n / 8, 64, 2048);
-    std::vector<int> rank(n);
-    for (int k = 0; k < n; ++k) rank[order[k]] = k / block;
-    std::vector<int> sorted = order;
-    std::stable_sort(sorted.begin(), sorted.end(), [&](int i, int j) {
-        return std::array{colour[i], rank[i], degree[i][0], degree[i][1]} <
-               std::array{colour[j], rank[j], degree[j][0], degree[j][1]};
-    });
+    rank_.resize(n);
+    for (int k = 0; k < n; ++k) rank_[order_[k]] = k / block;
+    const auto key = [&](int i) {
+        return std::array{colour_[i], rank_[i], degree_[i][0], degree_[i][1], i};
+    };
+    sorted_ = order_;
+    std::sort(sorted_.begin(), sorted_.end(), [&](int i, int j) { return key(i) < key(j); });
 
     s.slot.resize(n);
+    s.particle.clear();
     s.colour.assign(1, 0);
     for (int c = 0, k = 0; c < colours; ++c) {
-        while (k < n && colour[sorted[k]] == c) {
-            s.slot[sorted[k]] = static_cast<int>(s.particle.size());
-            s.particle.push_back(sorted[k++]);
+        while (k < n && colour_[sorted_[k]] == c) {
+            s.slot[sorted_[k]] = static_cast<int>(s.particle.size());
+            s.particle.push_back(sorted_[k++]);
         }
         while (s.particle.size() % lanes) s.particle.push_back(-1);
         s.colour.push_back(static_cast<int>(s.particle.size()) / lanes);
@@ -114,23 +122,12 @@ Slices make_slices(const State& state, const std::vector<Candidate>& candidates)
 
     s.pair_of.resize(candidates.size());
     s.flipped.resize(candidates.size());
+    s.first.clear();
+    s.second.clear();
     s.upper.assign(1, 0);
-    std::array<std::vector<std::array<int, 2>>, lanes> lists;  // slot of the other, candidate
-    const auto neighbours = [&](int slice, bool later) {
-        for (int l = 0; l < lanes; ++l) {
-            lists[l].clear();
-            const int own = slice * lanes + l, i = s.particle[own];
-            if (i < 0) continue;
-            for (int k = g.start[i]; k < g.start[i + 1]; ++k) {
-                const int other = s.slot[g.neighbour[k]];
-                if ((other > own) == later) lists[l].push_back({other, g.candidate[k]});
-            }
-            std::sort(lists[l].begin(), lists[l].end());
-        }
-    };
     for (int slice = 0; slice < s.count; ++slice) {
-        neighbours(slice, true);
-        const int longest = emit_groups(lists, [&](int l, const std::array<int, 2>* entry) {
+        find_neighbours(s, slice, true);
+        const int longest = emit_groups(lists_, [&](int l, const Entry* entry) {
             const int own = slice * lanes + l;
             if (entry) {
                 s.pair_of[(*entry)[1]] = static_cast<int>(s.first.size());
@@ -141,16 +138,17 @@ Slices make_slices(const State& state, const std::vector<Candidate>& candidates)
         });
         s.upper.push_back(s.upper.back() + longest);
     }
+    s.lower_pair.clear();
+    s.lower_slot.clear();
     s.lower.assign(1, 0);
     for (int slice = 0; slice < s.count; ++slice) {
-        neighbours(slice, false);
-        const int longest = emit_groups(lists, [&](int, const std::array<int, 2>* entry) {
+        find_neighbours(s, slice, false);
+        const int longest = emit_groups(lists_, [&](int, const Entry* entry) {
             s.lower_pair.push_back(entry ? s.pair_of[(*entry)[1]] : s.pairs());
             s.lower_slot.push_back(entry ? (*entry)[0] : s.slots());
         });
         s.lower.push_back(s.lower.back() + longest);
     }
-    return s;
 }
 
 void to_slices(const Velocities& v, const Slices& s, SlicedVector& result)

@@ -15,6 +15,7 @@
 #include "engine/lanes.h"
 #include "engine/pairs.h"
 
+#include <array>
 #include <vector>
 
 namespace sigmaflow {
@@ -38,9 +39,30 @@ struct Slices {
     int pairs() const { return groups() * lanes; }
 };
 
-/// Slices of n particles whose positions order them in space within a colour; `candidates` sorted
-/// by (i, j).
-Slices make_slices(const State& state, const std::vector<Candidate>& candidates);
+/// Makes slices and keeps the memory that this takes.
+class SliceMaker {
+public:
+    /// For the particles of a state, whose positions order them in space within a colour;
+    /// `candidates` sorted by (i, j).
+    void make(const State& state, const std::vector<Candidate>& candidates, Slices& slices);
+
+private:
+    /// Neighbours of every particle, and which candidate each is.
+    struct Graph {
+        std::vector<int> start, next, neighbour, candidate;
+    };
+    using Entry = std::array<int, 2>;  // slot of the other particle, candidate
+
+    void connect(int particles, const std::vector<Candidate>& candidates);
+    void order_in_space(const State& state);
+    int find_colours();
+    void find_neighbours(const Slices& slices, int slice, bool later);
+
+    Graph graph_;
+    std::vector<int> order_, colour_, used_by_, rank_, sorted_;
+    std::vector<std::array<int, 2>> degree_;        // earlier and later neighbours
+    std::array<std::vector<Entry>, lanes> lists_;  // of the lanes of one slice
+};
 
 /// Six numbers per particle, (U, Omega) or (F, T), in the order of the slices [count + 1]; the last
 /// slice is zero.

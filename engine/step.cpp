@@ -93,15 +93,17 @@ Evaluation advance_implicitly(State& state, const Model& model, const Control& c
         if (known_rate * h > 0.5 * left && known_rate > 0)
             // slightly too long: the step itself finds how much it needs to land
             h = std::min(h, 1.03 * shortened(known_rate * h, left) / known_rate);
-        State next = state;
+        State& next = workspace.buffers().trial;
+        next = state;
         Evaluation second = implicit_step(next, model, control, h, limit.strain, workspace);
         const double proposed = displacement_time_step(second, stepping.displacement);
         const bool passed = next.strain > limit.strain + 1e-12;
         if (h <= accepted_excess * proposed && !passed) {
             next.time_step = std::min(proposed, growth * dt);
-            state = std::move(next);
+            std::swap(state, next);
             return second;
         }
+        recycle(std::move(second), workspace);
         dt = passed ? 0.5 * h : std::max(0.2 * h, std::min(proposed, 0.5 * h));
         if (!(dt > 1e-14)) throw Error(ErrorKind::numerics, "", "the time step vanishes");
     }

@@ -38,6 +38,7 @@ struct Workspace::Buffers {
     }
 
     NeighbourList neighbours;
+    SliceMaker slice_maker;
     Slices slices;
     PairTable table;
     ResistanceMatrix matrix;
@@ -63,6 +64,7 @@ struct Workspace::Buffers {
     std::vector<ContactMotion> foreseen_motion;
     std::vector<Evaluation> spare;          // of earlier steps: their memory is used again
     std::array<State, 2> moved;             // stages of a step
+    State trial;                            // of a step that may be undone
     SolutionHistory history;
     std::array<PastStep, 2> past;           // implicit steps: the last one, and one before or undone
     std::vector<double> friction_share;     // of the touching pairs after the last move
