@@ -26,26 +26,31 @@ inline constexpr int lanes = 8;
 using f8 = float __attribute__((vector_size(32)));
 using d8 = double __attribute__((vector_size(64)));
 
+template <class V>
+using Scalar = std::remove_cvref_t<decltype(V{}[0])>;
+
 /// Eight lanes as elements of containers, aligned.
-struct alignas(32) F8 {
-    f8 v;
+template <class V>
+struct alignas(64) Lanes {
+    V v;
 };
-struct alignas(64) D8 {
-    d8 v;
-};
+using D8 = Lanes<d8>;
 
 template <class V>
 SIGMAFLOW_INLINE V spread(double x)
 {
-    return V{} + static_cast<std::remove_reference_t<decltype(V{}[0])>>(x);
+    return V{} + static_cast<Scalar<V>>(x);
 }
 
-SIGMAFLOW_INLINE f8 narrowed(const d8& x)
+/// Eight doubles as V, eight of V as doubles.
+template <class V>
+SIGMAFLOW_INLINE V narrowed(const d8& x)
 {
-    return __builtin_convertvector(x, f8);
+    return __builtin_convertvector(x, V);
 }
 
-SIGMAFLOW_INLINE d8 widened(const f8& x)
+template <class V>
+SIGMAFLOW_INLINE d8 widened(const V& x)
 {
     return __builtin_convertvector(x, d8);
 }
@@ -105,26 +110,26 @@ SIGMAFLOW_INLINE Triple<V> cross(const Triple<V>& a, const Triple<V>& b)
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Rows of eight floats (x y z 0, x y z 0) of eight particles from and to lanes.
-SIGMAFLOW_INLINE void gather_rows(const float* rows, const int* index, Triple<f8>& u, Triple<f8>& w)
+/// Rows of eight numbers (x y z 0, x y z 0) of eight particles from and to lanes.
+template <class V>
+SIGMAFLOW_INLINE void gather_rows(const V* row, const int* index, Triple<V>& u, Triple<V>& w)
 {
-    const f8* row = reinterpret_cast<const f8*>(rows);
-    const f8 a = row[index[0]], b = row[index[1]], c = row[index[2]], d = row[index[3]];
-    const f8 e = row[index[4]], f = row[index[5]], g = row[index[6]], h = row[index[7]];
-    const f8 ab01 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
-    const f8 ab2 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-    const f8 cd01 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
-    const f8 cd2 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-    const f8 ef01 = __builtin_shufflevector(e, f, 0, 8, 1, 9, 4, 12, 5, 13);
-    const f8 ef2 = __builtin_shufflevector(e, f, 2, 10, 3, 11, 6, 14, 7, 15);
-    const f8 gh01 = __builtin_shufflevector(g, h, 0, 8, 1, 9, 4, 12, 5, 13);
-    const f8 gh2 = __builtin_shufflevector(g, h, 2, 10, 3, 11, 6, 14, 7, 15);
-    const f8 x_abcd = __builtin_shufflevector(ab01, cd01, 0, 1, 8, 9, 4, 5, 12, 13);
-    const f8 y_abcd = __builtin_shufflevector(ab01, cd01, 2, 3, 10, 11, 6, 7, 14, 15);
-    const f8 z_abcd = __builtin_shufflevector(ab2, cd2, 0, 1, 8, 9, 4, 5, 12, 13);
-    const f8 x_efgh = __builtin_shufflevector(ef01, gh01, 0, 1, 8, 9, 4, 5, 12, 13);
-    const f8 y_efgh = __builtin_shufflevector(ef01, gh01, 2, 3, 10, 11, 6, 7, 14, 15);
-    const f8 z_efgh = __builtin_shufflevector(ef2, gh2, 0, 1, 8, 9, 4, 5, 12, 13);
+    const V a = row[index[0]], b = row[index[1]], c = row[index[2]], d = row[index[3]];
+    const V e = row[index[4]], f = row[index[5]], g = row[index[6]], h = row[index[7]];
+    const V ab01 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    const V ab2 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+    const V cd01 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+    const V cd2 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    const V ef01 = __builtin_shufflevector(e, f, 0, 8, 1, 9, 4, 12, 5, 13);
+    const V ef2 = __builtin_shufflevector(e, f, 2, 10, 3, 11, 6, 14, 7, 15);
+    const V gh01 = __builtin_shufflevector(g, h, 0, 8, 1, 9, 4, 12, 5, 13);
+    const V gh2 = __builtin_shufflevector(g, h, 2, 10, 3, 11, 6, 14, 7, 15);
+    const V x_abcd = __builtin_shufflevector(ab01, cd01, 0, 1, 8, 9, 4, 5, 12, 13);
+    const V y_abcd = __builtin_shufflevector(ab01, cd01, 2, 3, 10, 11, 6, 7, 14, 15);
+    const V z_abcd = __builtin_shufflevector(ab2, cd2, 0, 1, 8, 9, 4, 5, 12, 13);
+    const V x_efgh = __builtin_shufflevector(ef01, gh01, 0, 1, 8, 9, 4, 5, 12, 13);
+    const V y_efgh = __builtin_shufflevector(ef01, gh01, 2, 3, 10, 11, 6, 7, 14, 15);
+    const V z_efgh = __builtin_shufflevector(ef2, gh2, 0, 1, 8, 9, 4, 5, 12, 13);
     u.x = __builtin_shufflevector(x_abcd, x_efgh, 0, 1, 2, 3, 8, 9, 10, 11);
     u.y = __builtin_shufflevector(y_abcd, y_efgh, 0, 1, 2, 3, 8, 9, 10, 11);
     u.z = __builtin_shufflevector(z_abcd, z_efgh, 0, 1, 2, 3, 8, 9, 10, 11);
@@ -133,21 +138,22 @@ SIGMAFLOW_INLINE void gather_rows(const float* rows, const int* index, Triple<f8
     w.z = __builtin_shufflevector(z_abcd, z_efgh, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
-SIGMAFLOW_INLINE void write_four_rows(const f8& x, const f8& y, const f8& z, float* rows)
+template <class V>
+SIGMAFLOW_INLINE void write_four_rows(const V& x, const V& y, const V& z, V* row)
 {
-    const f8 zero{};
-    const f8 xy01 = __builtin_shufflevector(x, y, 0, 8, 1, 9, 4, 12, 5, 13);
-    const f8 xy23 = __builtin_shufflevector(x, y, 2, 10, 3, 11, 6, 14, 7, 15);
-    const f8 z01 = __builtin_shufflevector(z, zero, 0, 8, 1, 9, 4, 12, 5, 13);
-    const f8 z23 = __builtin_shufflevector(z, zero, 2, 10, 3, 11, 6, 14, 7, 15);
-    f8* row = reinterpret_cast<f8*>(rows);
+    const V zero{};
+    const V xy01 = __builtin_shufflevector(x, y, 0, 8, 1, 9, 4, 12, 5, 13);
+    const V xy23 = __builtin_shufflevector(x, y, 2, 10, 3, 11, 6, 14, 7, 15);
+    const V z01 = __builtin_shufflevector(z, zero, 0, 8, 1, 9, 4, 12, 5, 13);
+    const V z23 = __builtin_shufflevector(z, zero, 2, 10, 3, 11, 6, 14, 7, 15);
     row[0] = __builtin_shufflevector(xy01, z01, 0, 1, 8, 9, 4, 5, 12, 13);
     row[1] = __builtin_shufflevector(xy01, z01, 2, 3, 10, 11, 6, 7, 14, 15);
     row[2] = __builtin_shufflevector(xy23, z23, 0, 1, 8, 9, 4, 5, 12, 13);
     row[3] = __builtin_shufflevector(xy23, z23, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-SIGMAFLOW_INLINE void write_rows(const Triple<f8>& u, const Triple<f8>& w, float* rows)
+template <class V>
+SIGMAFLOW_INLINE void write_rows(const Triple<V>& u, const Triple<V>& w, V* rows)
 {
     write_four_rows(__builtin_shufflevector(u.x, w.x, 0, 1, 2, 3, 8, 9, 10, 11),
                     __builtin_shufflevector(u.y, w.y, 0, 1, 2, 3, 8, 9, 10, 11),
@@ -155,7 +161,7 @@ SIGMAFLOW_INLINE void write_rows(const Triple<f8>& u, const Triple<f8>& w, float
     write_four_rows(__builtin_shufflevector(u.x, w.x, 4, 5, 6, 7, 12, 13, 14, 15),
                     __builtin_shufflevector(u.y, w.y, 4, 5, 6, 7, 12, 13, 14, 15),
                     __builtin_shufflevector(u.z, w.z, 4, 5, 6, 7, 12, 13, 14, 15),
-                    rows + 4 * lanes);
+                    rows + 4);
 }
 
 /// Three neighbouring values of rows of `Width` doubles of eight particles.

@@ -12,7 +12,10 @@ constexpr int factor_lifetime = 10;  // solves at most
 constexpr int aged = 2;               // iterations more than with the fresh factor
 constexpr int most_iterations = 2000;
 constexpr int most_corrections = 40;
-constexpr double narrow_reduction = 1e-4;  // of the residual, by one correction in single precision
+// least residual after one correction, relative
+template <class V>
+constexpr double reduction = sizeof(Scalar<V>) == 4 ? 1e-4 : 1e-10;
+constexpr int patience = 60;       // iterations without progress
 constexpr double margin = 0.8;     // of the goal: what a correction aims at
 constexpr double least_pivot = 1e-12;  // relative; less is rounding
 constexpr double least_drag = 0.02;    // single precision cannot resolve less [eta0 a, eta0 a^3]
@@ -51,7 +54,8 @@ SIGMAFLOW_INLINE void diagonal_times(const DiagonalSlice<V>& b, const V* v, V* y
     y[5] = r[4] * v[3] + r[5] * v[4] + r[2] * v[5] - c[0] * v[1] + c[1] * v[0];
 }
 
-SIGMAFLOW_INLINE double sum_of(const F8* partial, int count)
+template <class V>
+SIGMAFLOW_INLINE double sum_of(const Lanes<V>* partial, int count)
 {
     d8 even{}, odd{};
     int k = 0;
@@ -113,59 +117,59 @@ SIGMAFLOW_INLINE void invert(const Full<V>& A, V* inverse, V& worst)
 }
 
 /// The loops over slices of one correction.
-struct ConjugateGradients::Sweep {
+template <class V>
+struct ConjugateGradients<V>::Sweep {
     const Slices* slices;
     const OwnGroup *upper, *lower;
-    const DiagonalSlice<f8>* diagonal;
+    const DiagonalSlice<V>* diagonal;
     const Inverse* inverse;
     const Slice* f;  // null: no rank-one term
-    float weight;
     Slice *p, *r, *z, *t, *u, *q, *Dq, *x;
-    float* rows;
-    F8* partial;
-    F8* second_partial;
+    V* rows;
+    Lanes<V>* partial;
+    Lanes<V>* second_partial;
 
     // load -= off-diagonal block times the velocities of the other particles
-    SIGMAFLOW_INLINE static void subtract_block(const OwnGroup& g, const float* rows,
-                                                const int* slot, Motion<f8>& load)
+    SIGMAFLOW_INLINE static void subtract_block(const OwnGroup& g, const V* rows,
+                                                const int* slot, Motion<V>& load)
     {
-        Motion<f8> v;
+        Motion<V> v;
         gather_rows(rows, slot, v.u, v.w);
-        const Triple<f8> n{g.nx, g.ny, g.nz};
-        const f8 nu = g.ya_minus_xa * dot(n, v.u), nw = g.yc * dot(n, v.w);
+        const Triple<V> n{g.nx, g.ny, g.nz};
+        const V nu = g.ya_minus_xa * dot(n, v.u), nw = g.yc * dot(n, v.w);
         load.u = load.u - (nu * n - g.ya * v.u + g.force * cross(n, v.w));
         load.w = load.w - (g.turn * cross(n, v.u) + g.yc * v.w - nw * n);
     }
 
-    SIGMAFLOW_INLINE void subtract_upper(int k, Motion<f8>& load) const
+    SIGMAFLOW_INLINE void subtract_upper(int k, Motion<V>& load) const
     {
         for (int g = slices->upper[k]; g < slices->upper[k + 1]; ++g)
             subtract_block(upper[g], rows, slices->second.data() + g * lanes, load);
     }
 
-    SIGMAFLOW_INLINE void subtract_lower(int k, Motion<f8>& load) const
+    SIGMAFLOW_INLINE void subtract_lower(int k, Motion<V>& load) const
     {
         for (int g = slices->lower[k]; g < slices->lower[k + 1]; ++g)
             subtract_block(lower[g], rows, slices->lower_slot.data() + g * lanes, load);
     }
 
     /// y = D^-1 load, also as rows.
-    SIGMAFLOW_INLINE Motion<f8> divided(int k, const Motion<f8>& load) const
+    SIGMAFLOW_INLINE Motion<V> divided(int k, const Motion<V>& load) const
     {
-        const f8 v[6] = {load.u.x, load.u.y, load.u.z, load.w.x, load.w.y, load.w.z};
-        f8 y[6];
+        const V v[6] = {load.u.x, load.u.y, load.u.z, load.w.x, load.w.y, load.w.z};
+        V y[6];
         symmetric_times(inverse[k].v, v, y);
-        const Motion<f8> result{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}};
-        sigmaflow::write_rows(result.u, result.w, rows + static_cast<std::size_t>(64) * k);
+        const Motion<V> result{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}};
+        sigmaflow::write_rows(result.u, result.w, rows + static_cast<std::size_t>(lanes) * k);
         return result;
     }
 
-    SIGMAFLOW_INLINE static Motion<f8> read(const Slice& s)
+    SIGMAFLOW_INLINE static Motion<V> read(const Slice& s)
     {
         return {{s.c[0], s.c[1], s.c[2]}, {s.c[3], s.c[4], s.c[5]}};
     }
 
-    SIGMAFLOW_INLINE static void write(const Motion<f8>& m, Slice& s)
+    SIGMAFLOW_INLINE static void write(const Motion<V>& m, Slice& s)
     {
         s = {{m.u.x, m.u.y, m.u.z, m.w.x, m.w.y, m.w.z}};
     }
@@ -174,9 +178,9 @@ struct ConjugateGradients::Sweep {
     SIGMAFLOW_HOT void forward(const Slice* c, Slice* y, Slice* Dy, Range range) const
     {
         for (int k = range.begin; k < range.end; ++k) {
-            Motion<f8> load = read(c[k]);
+            Motion<V> load = read(c[k]);
             subtract_lower(k, load);
-            const Motion<f8> result = divided(k, load);
+            const Motion<V> result = divided(k, load);
             write(load, Dy[k]);
             write(result, y[k]);
             partial[k].v = dot(load.u, result.u) + dot(load.w, result.w);
@@ -184,16 +188,16 @@ struct ConjugateGradients::Sweep {
     }
 
     /// p = z + beta p, t = (D + L)^-T p, u = D t; partial sums of f.t.
-    SIGMAFLOW_HOT void backward(float beta, Range range) const
+    SIGMAFLOW_HOT void backward(Scalar<V> beta, Range range) const
     {
         for (int k = range.end - 1; k >= range.begin; --k) {
             for (int c = 0; c < 6; ++c) p[k].c[c] = z[k].c[c] + beta * p[k].c[c];
-            Motion<f8> load = read(p[k]);
+            Motion<V> load = read(p[k]);
             subtract_upper(k, load);
             write(load, u[k]);
             write(divided(k, load), t[k]);
             if (f) {
-                f8 sum{};
+                V sum{};
                 for (int c = 0; c < 6; ++c) sum += f[k].c[c] * t[k].c[c];
                 partial[k].v = sum;
             }
@@ -202,31 +206,31 @@ struct ConjugateGradients::Sweep {
 
     /// q = t + (D + L)^-1 c, Dq = u + D (D + L)^-1 c, with c = p + (A_D - 2 D) t - w f (f.t);
     /// partial sums of p.q.
-    SIGMAFLOW_HOT void forward_of_product(float weighted_ft, Range range) const
+    SIGMAFLOW_HOT void forward_of_product(Scalar<V> weighted_ft, Range range) const
     {
         for (int k = range.begin; k < range.end; ++k) {
-            f8 c[6];
+            V c[6];
             diagonal_times(diagonal[k], t[k].c, c);
             for (int e = 0; e < 6; ++e) {
                 c[e] += p[k].c[e] - 2 * u[k].c[e];
                 if (f) c[e] -= weighted_ft * f[k].c[e];
             }
-            Motion<f8> load{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
+            Motion<V> load{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
             subtract_lower(k, load);
-            const Motion<f8> y = divided(k, load), forward_t = read(t[k]), forward_u = read(u[k]);
+            const Motion<V> y = divided(k, load), forward_t = read(t[k]), forward_u = read(u[k]);
             write({forward_t.u + y.u, forward_t.w + y.w}, q[k]);
             write({forward_u.u + load.u, forward_u.w + load.w}, Dq[k]);
-            f8 sum{};
+            V sum{};
             for (int e = 0; e < 6; ++e) sum += p[k].c[e] * q[k].c[e];
             second_partial[k].v = sum;
         }
     }
 
     /// x += alpha t, r -= alpha q, z -= alpha Dq; partial sums of r.z.
-    SIGMAFLOW_HOT void update(float alpha, Range range) const
+    SIGMAFLOW_HOT void update(Scalar<V> alpha, Range range) const
     {
         for (int k = range.begin; k < range.end; ++k) {
-            f8 sum{};
+            V sum{};
             for (int c = 0; c < 6; ++c) {
                 x[k].c[c] += alpha * t[k].c[c];
                 r[k].c[c] -= alpha * q[k].c[c];
@@ -238,7 +242,8 @@ struct ConjugateGradients::Sweep {
     }
 };
 
-void ConjugateGradients::resize(const Slices& s)
+template <class V>
+void ConjugateGradients<V>::resize(const Slices& s)
 {
     const std::size_t count = s.count + 1;
     upper_.resize(s.groups());
@@ -251,21 +256,22 @@ void ConjugateGradients::resize(const Slices& s)
     work_.resize(10 * count);
     rows_.resize(lanes * count);
     double_rows_.resize(lanes * count);
-    std::fill(rows_.end() - lanes, rows_.end(), F8{});
+    std::fill(rows_.end() - lanes, rows_.end(), Lanes<V>{});
     std::fill(double_rows_.end() - lanes, double_rows_.end(), D8{});
     partial_.resize(2 * count);
     double_partial_.resize(2 * count);
     residual_.resize(count);
 }
 
-SIGMAFLOW_HOT void ConjugateGradients::load(const ResistanceMatrix& m, Range range)
+template <class V>
+SIGMAFLOW_HOT void ConjugateGradients<V>::load(const ResistanceMatrix& m, Range range)
 {
     const Slices& s = *m.slices;
     for (int k = range.begin; k < range.end; ++k) {
         for (int g = s.upper[k]; g < s.upper[k + 1]; ++g) {
             const PairGroup& p = m.pairs[g];
-            upper_[g] = {narrowed(p.nx), narrowed(p.ny),   narrowed(p.nz),   narrowed(p.ya - p.xa),
-                         narrowed(p.ya), narrowed(p.yb21), narrowed(p.yb11), narrowed(p.yc12)};
+            upper_[g] = {narrowed<V>(p.nx), narrowed<V>(p.ny),   narrowed<V>(p.nz),   narrowed<V>(p.ya - p.xa),
+                         narrowed<V>(p.ya), narrowed<V>(p.yb21), narrowed<V>(p.yb11), narrowed<V>(p.yc12)};
         }
         for (int g = s.lower[k]; g < s.lower[k + 1]; ++g) {
             OwnGroup& own = lower_[g];
@@ -273,30 +279,30 @@ SIGMAFLOW_HOT void ConjugateGradients::load(const ResistanceMatrix& m, Range ran
                 const int pair = s.lower_pair[g * lanes + l];
                 const double* p =
                     reinterpret_cast<const double*>(m.pairs.data() + pair / lanes) + pair % lanes;
-                own.nx[l] = static_cast<float>(-p[0 * lanes]);
-                own.ny[l] = static_cast<float>(-p[1 * lanes]);
-                own.nz[l] = static_cast<float>(-p[2 * lanes]);
-                own.ya_minus_xa[l] = static_cast<float>(p[4 * lanes] - p[3 * lanes]);
-                own.ya[l] = static_cast<float>(p[4 * lanes]);
-                own.force[l] = static_cast<float>(p[5 * lanes]);
-                own.turn[l] = static_cast<float>(p[6 * lanes]);
-                own.yc[l] = static_cast<float>(p[8 * lanes]);
+                own.nx[l] = static_cast<Scalar<V>>(-p[0 * lanes]);
+                own.ny[l] = static_cast<Scalar<V>>(-p[1 * lanes]);
+                own.nz[l] = static_cast<Scalar<V>>(-p[2 * lanes]);
+                own.ya_minus_xa[l] = static_cast<Scalar<V>>(p[4 * lanes] - p[3 * lanes]);
+                own.ya[l] = static_cast<Scalar<V>>(p[4 * lanes]);
+                own.force[l] = static_cast<Scalar<V>>(p[5 * lanes]);
+                own.turn[l] = static_cast<Scalar<V>>(p[6 * lanes]);
+                own.yc[l] = static_cast<Scalar<V>>(p[8 * lanes]);
             }
         }
     }
     diagonal_blocks(m, range, diagonal_.data());
     for (int k = range.begin; k < range.end; ++k) {
         // refinement makes up for the drag that is added here
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < 3 && sizeof(Scalar<V>) == 4; ++c) {
             diagonal_[k].translation[c] += larger(least_drag - m.drag[2 * k].v, d8{});
             diagonal_[k].rotation[c] += larger(least_drag - m.drag[2 * k + 1].v, d8{});
         }
         for (int c = 0; c < 6; ++c) {
-            narrow_diagonal_[k].translation[c] = narrowed(diagonal_[k].translation[c]);
-            narrow_diagonal_[k].rotation[c] = narrowed(diagonal_[k].rotation[c]);
+            narrow_diagonal_[k].translation[c] = narrowed<V>(diagonal_[k].translation[c]);
+            narrow_diagonal_[k].rotation[c] = narrowed<V>(diagonal_[k].rotation[c]);
         }
         for (int c = 0; c < 3; ++c)
-            narrow_diagonal_[k].coupling[c] = narrowed(diagonal_[k].coupling[c]);
+            narrow_diagonal_[k].coupling[c] = narrowed<V>(diagonal_[k].coupling[c]);
     }
 }
 
@@ -333,7 +339,8 @@ SIGMAFLOW_INLINE void block_times(const Triple<d8>& n, const d8& g, const d8& ya
 }
 
 // D_i = A_i - sum over the earlier particles of L_ij D_j^-1 L_ij^T
-SIGMAFLOW_HOT void ConjugateGradients::factorise(const ResistanceMatrix& m, Range range)
+template <class V>
+SIGMAFLOW_HOT void ConjugateGradients<V>::factorise(const ResistanceMatrix& m, Range range)
 {
     const Slices& s = *m.slices;
     for (int k = range.begin; k < range.end; ++k) {
@@ -382,26 +389,35 @@ SIGMAFLOW_HOT void ConjugateGradients::factorise(const ResistanceMatrix& m, Rang
                 wide_inverse_[k].v[e] =
                     worst > least_pivot ? wide_inverse_[k].v[e] : own_inverse[e];
         }
-        for (int e = 0; e < 21; ++e) inverse_[k].v[e] = narrowed(wide_inverse_[k].v[e]);
+        for (int e = 0; e < 21; ++e) inverse_[k].v[e] = narrowed<V>(wide_inverse_[k].v[e]);
     }
 }
 
-bool ConjugateGradients::solve(const ResistanceProblem& problem, const SlicedVector& b,
+template <class V>
+bool ConjugateGradients<V>::solve(const ResistanceProblem& problem, const SlicedVector& b,
                                SlicedVector& x, double tolerance, int threads, SolveReport& report)
 {
     resize(*problem.matrix.slices);
     bool good = false;
     indefinite_ = false;
     if (age_ >= factor_lifetime) age_ = -1;
-    with_team(threads, [&](const Team& team) {
-        SolveReport own;
-        const bool reached = work(problem, b, x, tolerance, team, own);
-        if (team.rank == 0) {
-            good = reached;
-            report.iterations = own.iterations;
-            report.residual = own.residual;
-        }
-    });
+    const auto attempt = [&](int most) {
+        with_team(threads, [&](const Team& team) {
+            SolveReport own;
+            const bool reached = work(problem, b, x, tolerance, most, team, own);
+            if (team.rank == 0) {
+                good = reached;
+                report.iterations += own.iterations;
+                report.residual = own.residual;
+            }
+        });
+    };
+    const bool fresh = age_ < 0;
+    attempt(fresh ? most_iterations : 2 * fresh_iterations_ + 10);
+    if (!good && !fresh && !indefinite_) {  // springs that came into the matrix make it another one
+        age_ = -1;
+        attempt(most_iterations);
+    }
     if (age_ == 0) fresh_iterations_ = report.iterations;
     ++age_;
     if (report.iterations >= fresh_iterations_ + aged) age_ = -1;
@@ -429,18 +445,12 @@ SIGMAFLOW_HOT void product(const SlicedVector& v, const SlicedVector& w, Range r
     }
 }
 
-double sum_of(const D8* partial, int count)
-{
-    d8 sum{};
-    for (int k = 0; k < count; ++k) sum += partial[k].v;
-    return total(sum);
-}
-
 }
 
 // Every member of the team goes through all of this and decides the same, from the same sums.
-bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVector& b,
-                              SlicedVector& x, double tolerance, const Team& team,
+template <class V>
+bool ConjugateGradients<V>::work(const ResistanceProblem& problem, const SlicedVector& b,
+                              SlicedVector& x, double tolerance, int most, const Team& team,
                               SolveReport& report)
 {
     const ResistanceMatrix& matrix = problem.matrix;
@@ -472,7 +482,6 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
                 narrow_diagonal_.data(),
                 inverse_.data(),
                 nullptr,
-                static_cast<float>(problem.weight),
                 nullptr,
                 nullptr,
                 nullptr,
@@ -481,7 +490,7 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
                 nullptr,
                 nullptr,
                 nullptr,
-                reinterpret_cast<float*>(rows_.data()),
+                &rows_.data()->v,
                 partial_.data(),
                 partial_.data() + stride};
     for (Slice** v : {&sweep.p, &sweep.r, &sweep.z, &sweep.t, &sweep.u, &sweep.q, &sweep.Dq,
@@ -492,7 +501,7 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
     if (problem.direction) {
         const SlicedVector& direction = *problem.direction;
         own_slices([&](int k) {
-            for (int c = 0; c < 6; ++c) f[k].c[c] = narrowed(direction[k].c[c]);
+            for (int c = 0; c < 6; ++c) f[k].c[c] = narrowed<V>(direction[k].c[c]);
         });
         sweep.f = f;
     }
@@ -509,7 +518,7 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
     }
     const auto narrow = [&](const SlicedVector& from, double size) {
         own_slices([&](int k) {
-            for (int c = 0; c < 6; ++c) right[k].c[c] = narrowed(from[k].c[c] / size);
+            for (int c = 0; c < 6; ++c) right[k].c[c] = narrowed<V>(from[k].c[c] / size);
         });
         team.barrier();
         by_colours(true, [&](Range range) { sweep.forward(right, sweep.r, sweep.z, range); });
@@ -548,32 +557,44 @@ bool ConjugateGradients::work(const ResistanceProblem& problem, const SlicedVect
 
         own_slices([&](int k) { sweep.p[k] = sweep.x[k] = Slice{}; });
         const double enough =
-            std::max(margin * goal / r2, narrow_reduction * narrow_reduction * start);
-        double rho = start, beta = 0;
-        while (rho > enough) {
-            if (report.iterations == most_iterations) return false;
+            std::max(margin * goal / r2, reduction<V> * reduction<V> * start);
+        double rho = start, beta = 0, best = start;
+        bool reached = true;
+        for (int since_best = 0; rho > enough; ++since_best) {
+            if (since_best == patience || report.iterations == most) {
+                reached = false;
+                break;
+            }
             team.barrier();
             by_colours(false,
-                       [&](Range range) { sweep.backward(static_cast<float>(beta), range); });
+                       [&](Range range) { sweep.backward(static_cast<Scalar<V>>(beta), range); });
             const double ft = sweep.f ? sum_of(sweep.partial, s.count) : 0;
             by_colours(true, [&](Range range) {
-                sweep.forward_of_product(static_cast<float>(problem.weight * ft), range);
+                sweep.forward_of_product(static_cast<Scalar<V>>(problem.weight * ft), range);
             });
             const double curvature = sum_of(sweep.second_partial, s.count);
             if (!(curvature > 0) || !std::isfinite(curvature)) return false;
             team.barrier();
-            own([&](Range range) { sweep.update(static_cast<float>(rho / curvature), range); });
+            own([&](Range range) { sweep.update(static_cast<Scalar<V>>(rho / curvature), range); });
             team.barrier();
             const double next_rho = sum_of(sweep.partial, s.count);
             if (!std::isfinite(next_rho)) return false;
             beta = next_rho / rho;
             rho = next_rho;
             ++report.iterations;
+            if (rho < 0.9 * best) {
+                best = rho;
+                since_best = 0;
+            }
         }
         own_slices([&](int k) {
             for (int c = 0; c < 6; ++c) x[k].c[c] += size * widened(sweep.x[k].c[c]);
         });
+        if (!reached) return false;
     }
 }
+
+template class ConjugateGradients<f8>;
+template class ConjugateGradients<d8>;
 
 }

@@ -1,9 +1,10 @@
 // engine/pcg.h -- conjugate gradients for (K - w f f^T) x = b, K = L + A_D + L^T in 6x6 blocks.
 //
-// Iterative refinement: the residual is computed in double precision, and its correction in single
-// precision by conjugate gradients (Wilkinson, Rounding Errors in Algebraic Processes, 1963; mixed
+// Iterative refinement: the residual is computed in double precision, and its correction in the
+// precision of V (f8: single, d8: double) by conjugate gradients (Wilkinson, Rounding Errors in Algebraic Processes, 1963; mixed
 // precision: Carson & Higham, SIAM J. Sci. Comput. 40, A817, 2018), until the residual is small
-// enough: the result has the accuracy that is asked for, most of the work half the memory.
+// enough: with f8 the result has the accuracy that is asked for, and most of the work half the
+// memory. Nearly jammed states are too ill-conditioned for single precision.
 //
 // Preconditioner M = (D + L) D^-1 (D + L)^T with the blocks D of the diagonal-based incomplete
 // factor,
@@ -23,6 +24,7 @@
 
 namespace sigmaflow {
 
+template <class V>
 class ConjugateGradients {
 public:
     /// Forgets the incomplete factor: the next solve makes a new one.
@@ -37,14 +39,14 @@ private:
     /// Eight pairs as one particle sees them; the normal points to the other one.
     ///   load on it = g (n.u) n - ya u + force n x w,  torque = turn n x u + yc (w - (n.w) n)
     struct alignas(64) OwnGroup {
-        f8 nx, ny, nz, ya_minus_xa, ya, force, turn, yc;
+        V nx, ny, nz, ya_minus_xa, ya, force, turn, yc;
     };
     struct alignas(64) Slice {
-        f8 c[6];
+        V c[6];
     };
     /// Upper triangles of symmetric 6x6 blocks, row by row.
     struct alignas(64) Inverse {
-        f8 v[21];
+        V v[21];
     };
     struct alignas(64) DoubleInverse {
         d8 v[21];
@@ -55,20 +57,20 @@ private:
     void load(const ResistanceMatrix& matrix, Range range);
     void factorise(const ResistanceMatrix& matrix, Range range);
     bool work(const ResistanceProblem& problem, const SlicedVector& b, SlicedVector& x,
-              double tolerance, const Team& team, SolveReport& report);
+              double tolerance, int most, const Team& team, SolveReport& report);
 
     bool indefinite_ = false;  // a diagonal block of the matrix is not positive definite
     int age_ = -1;  // solves since the factor was made; -1: there is none
     int fresh_iterations_ = 0;  // of the first solve with it
     std::vector<OwnGroup> upper_, lower_;
     std::vector<DiagonalSlice<d8>> diagonal_;
-    std::vector<DiagonalSlice<f8>> narrow_diagonal_;
+    std::vector<DiagonalSlice<V>> narrow_diagonal_;
     std::vector<DoubleInverse> wide_inverse_;  // D^-1 while the factor is made
     std::vector<Inverse> inverse_;             // D^-1
     std::vector<Slice> work_;                  // vectors of one correction
-    std::vector<F8> rows_;                     // a row of eight floats per slot: t, y
+    std::vector<Lanes<V>> rows_;               // a row of eight numbers per slot: t, y
     std::vector<D8> double_rows_;              // a row of eight doubles per slot: x
-    std::vector<F8> partial_;                  // sums of the slices
+    std::vector<Lanes<V>> partial_;            // sums of the slices
     std::vector<D8> double_partial_;
     SlicedVector residual_;
 };

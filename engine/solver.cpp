@@ -9,6 +9,7 @@ namespace sigmaflow {
 
 namespace {
 
+constexpr int precise_solves = 50;
 constexpr int aged = 8;            // iterations from which a new factor is cheaper
 constexpr int most_iterations = 200;  // with an old factor
 
@@ -23,8 +24,10 @@ void add(SlicedVector& v, double s, const SlicedVector& w)
 
 struct ResistanceSolver::Impl {
     SolverSettings settings;
-    ConjugateGradients gradients;
+    ConjugateGradients<f8> gradients;
+    ConjugateGradients<d8> precise_gradients;  // where single precision does not suffice
     Cholesky cholesky;
+    int precise_left = 0;     // solves in double precision before single is tried again
     bool analysed = false;    // the pattern of the Cholesky factor is made when it is first needed
     bool factorised = false;  // there is a factor for as many particles, of this or an earlier R
     int particles = 0;
@@ -38,6 +41,25 @@ struct ResistanceSolver::Impl {
         analysed = true;
         cholesky.factorise(matrix);
         factorised = true;
+    }
+
+    bool iterate(const ResistanceProblem& problem, const SlicedVector& b, double tolerance,
+                 SlicedVector& x, SolveReport& report)
+    {
+        const auto with = [&](auto& method) {
+            SolveReport one;
+            const bool good = method.solve(problem, b, x, tolerance, settings.threads, one);
+            report.iterations += one.iterations;
+            report.residual = one.residual;
+            return good;
+        };
+        if (precise_left > 0)
+            --precise_left;
+        else if (with(gradients))
+            return true;
+        else
+            precise_left = precise_solves;
+        return with(precise_gradients);
     }
 
     void apply_factor(const Slices& slices, const SlicedVector& b, SlicedVector& x)
@@ -143,6 +165,7 @@ void ResistanceSolver::set_pattern(int n, const std::vector<Candidate>& candidat
     impl_->candidates = candidates;
     impl_->analysed = false;
     impl_->gradients.forget();
+    impl_->precise_gradients.forget();
 }
 
 SolveReport ResistanceSolver::solve(const ResistanceProblem& problem, const SlicedVector& b,
@@ -153,8 +176,7 @@ SolveReport ResistanceSolver::solve(const ResistanceProblem& problem, const Slic
     if (x.size() != b.size()) x.assign(b.size(), Slice6{});
     SolveReport report;
     if (s.settings.kind == SolverKind::pcg) {
-        if (s.gradients.solve(problem, b, x, tolerance, s.settings.threads, report))
-            return report;
+        if (s.iterate(problem, b, tolerance, x, report)) return report;
         report.fell_back = true;
     }
     if (s.settings.kind == SolverKind::lagged_cholesky) {
