@@ -75,6 +75,15 @@ double shortened(double step, double left)
 constexpr double growth = 1.3;         // largest ratio of successive implicit steps
 constexpr double first_share = 0.05;   // of the displacement, in the first implicit step
 constexpr double accepted_excess = 2;  // displacements; a step that moves more is undone
+// Nothing else bounds the step of a suspension that comes to rest, and long steps would shake it
+// before its springs have found their balance, which takes about 60 eta0/sigma.
+constexpr double longest_step = 4;  // [eta0/sigma]
+
+double longest_time_step(const Control& control)
+{
+    const auto* stress = std::get_if<ImposedStress>(&control);
+    return stress ? longest_step / stress->value : std::numeric_limits<double>::infinity();
+}
 
 Evaluation advance_implicitly(State& state, const Model& model, const Control& control,
                               const Stepping& stepping, const StepLimit& limit,
@@ -99,7 +108,8 @@ Evaluation advance_implicitly(State& state, const Model& model, const Control& c
         const double proposed = displacement_time_step(second, stepping.displacement);
         const bool passed = next.strain > limit.strain + 1e-12;
         if (h <= accepted_excess * proposed && !passed) {
-            next.time_step = std::min(proposed, growth * dt);
+            next.time_step =
+                std::min({proposed, growth * dt, longest_time_step(control)});
             std::swap(state, next);
             return second;
         }
