@@ -77,7 +77,7 @@ constexpr double first_share = 0.05;   // of the displacement, in the first impl
 constexpr double accepted_excess = 2;  // displacements; a step that moves more is undone
 // Nothing else bounds the step of a suspension that comes to rest, and long steps would shake it
 // before its springs have found their balance, which takes about 60 eta0/sigma.
-constexpr double longest_step = 4;  // [eta0/sigma]
+constexpr double longest_step = 1;  // [eta0/sigma]
 
 double longest_time_step(const Control& control)
 {

@@ -10,18 +10,19 @@ namespace sigmaflow {
 namespace {
 
 // Shears until the monitor speaks or a strain or time is reached; returns true if jammed.
-bool jams(State& s, double stress, double strain, double time, JammingWindow& window)
+bool jams(State& s, double stress, double strain, double time, JammingWindow& window,
+          const Stepping& stepping = {}, const SolverSettings& solver = {})
 {
-    Workspace workspace;
+    Workspace workspace(solver);
     JammingMonitor monitor(stress);
     const Model model;
     while (s.strain < strain && s.time < time) {
-        const Evaluation e = evaluate(s, model, ImposedStress{stress}, workspace);
+        const Evaluation e = advance(s, model, ImposedStress{stress}, stepping, {strain, time},
+                                     workspace);
         if (monitor.observe(s, e)) {
             window = monitor.last_window();
             return true;
         }
-        advance(s, model, ImposedStress{stress}, {}, {strain, time}, workspace, &e);
     }
     window = monitor.last_window();
     return false;
@@ -43,6 +44,25 @@ TEST(Jamming, ASuspensionAboveItsShearJammingDensityJamsAndCarriesTheStressByFor
     EXPECT_NEAR((sample.stress_contact + sample.stress_repulsion) / 20, 1, 1e-3);
     EXPECT_GT(sample.contact_number, 3);
 }
+
+class StiffCorner : public testing::TestWithParam<int> {};
+
+// The long steps of the implicit scheme: at rest the springs must find their balance all the same.
+TEST_P(StiffCorner, ASuspensionThatCannotFlowComesToRest)
+{
+    State s = support::dense_state(100, 0.61, 0, GetParam());
+    JammingWindow window;
+    const SolverSettings solver{SolverKind::pcg, 1e-3};
+    ASSERT_TRUE(jams(s, 20, 2, 400, window, {Scheme::implicit, 1e-2}, solver));
+    EXPECT_LT(s.strain, 0.5);
+    EXPECT_LT(window.force_residual, 0.01);
+    Workspace workspace;
+    const Sample sample =
+        make_sample(s, evaluate_in_detail(s, {}, ImposedStress{20}, workspace));
+    EXPECT_NEAR((sample.stress_contact + sample.stress_repulsion) / 20, 1, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, StiffCorner, testing::Range(1, 9));
 
 TEST(Jamming, AFlowingSuspensionIsNotJammed)
 {

@@ -45,7 +45,8 @@ TEST(Workflow, ResolvedParametersHoldWhatTheFileSaysAndTheDefaultsOfTheRest)
     const Json resolved =
         parse_workflow(R"({"suspension": {"particles": 1e2, "seed": 18446744073709551615,
                            "model": {"friction_static": 2, "contact_hydrodynamics": "dashpot"}},
-                           "steps": [{"step": "pack"}, {"step": "shear", "stress": 0.1}]})",
+                           "steps": [{"step": "pack"},
+                                     {"step": "shear", "stress": 0.1, "scheme": "heun"}]})",
                        "test.json")
             .resolved();
     EXPECT_EQ(resolved["name"], "test");
@@ -56,7 +57,8 @@ TEST(Workflow, ResolvedParametersHoldWhatTheFileSaysAndTheDefaultsOfTheRest)
     EXPECT_EQ(resolved["suspension"]["model"]["contact_hydrodynamics"], "dashpot");
     EXPECT_EQ(resolved["suspension"]["model"]["debye_length"], 0.02);
     EXPECT_EQ(resolved["steps"][1]["stress"], 0.1);
-    EXPECT_EQ(resolved["steps"][1]["scheme"], "implicit");
+    EXPECT_EQ(resolved["steps"][1]["scheme"], "heun");
+    EXPECT_EQ(resolved["steps"][1]["solver"], "pcg");
     EXPECT_FALSE(resolved["steps"][1].contains("rate"));
 }
 

@@ -308,7 +308,12 @@ std::vector<Mistake> mistakes_of_the_steps()
         {"unknown_scheme",
          step("{\"step\": \"shear\", \"stress\": 2, \"scheme\": @\"huen\"}"),
          "/steps/1/scheme",
-         {"one of heun, euler", "did you mean \"heun\"?"}},
+         {"one of implicit, heun, euler", "did you mean \"heun\"?"}},
+        {"implicit_dashpots",
+         "{\"suspension\": {\"model\": {\"contact_hydrodynamics\": \"dashpot\"}}, \"steps\": "
+         "[{\"step\": \"pack\"}, @{\"step\": \"shear\", \"stress\": 2}]}",
+         "/steps/1/scheme",
+         {"\"implicit\" (the default) needs contact_hydrodynamics", "\"heun\" can do"}},
         {"coarse_steps",
          step("{\"step\": \"shear\", \"stress\": 2, \"displacement\": @1}"),
          "/steps/1/displacement",
