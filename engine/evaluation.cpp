@@ -17,7 +17,7 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-double SolutionHistory::guess(double at, Velocities& v) const
+double SolutionHistory::guess(double at, Velocities& v, int threads) const
 {
     v.clear();
     if (known == 0) return 0;
@@ -26,7 +26,7 @@ double SolutionHistory::guess(double at, Velocities& v) const
     // beyond a few intervals a straight line is worse than the last value
     if (known == 1 || ahead == 0 || !(std::abs(ahead) < 4 * std::abs(interval))) return rate[0];
     const double weight = ahead / interval;
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] += weight * (solution[0][i] - solution[1][i]);
+    for_each(threads, v.size(), [&](int i) { v[i] += weight * (solution[0][i] - solution[1][i]); });
     return rate[0] + weight * (rate[0] - rate[1]);
 }
 
@@ -99,22 +99,63 @@ void make_pattern(const State& s, Workspace::Buffers& b)
     const auto& candidates = b.neighbours.candidates();
     b.solver.set_pattern(s.size(), candidates);
     b.slice_maker.make(s, candidates, b.slices);
-    make_shapes(s, b.slices, b.table);
+    make_shapes(s, b.slices, b.threads, b.table);
     const std::size_t count = b.slices.count + 1;
     b.matrix.slices = &b.slices;
-    b.matrix.pairs.assign(b.slices.groups() + 1, PairGroup{});
+    b.matrix.pairs.resize(b.slices.groups() + 1);
+    b.matrix.pairs.back() = PairGroup{};
     b.matrix.drag.resize(2 * count);
-    b.rows.assign(count * lanes, Row{});
+    b.rows.resize(count * lanes);
     b.moment.resize(count);
     b.affine.resize(count);
-    b.unit_load.assign(count, Slice6{});
-    b.fixed_load.assign(count, Slice6{});
-    b.right.assign(count, Slice6{});
+    b.unit_load.resize(count);
+    b.unit_load.back() = Slice6{};
+    b.fixed_load.resize(count);
+    b.fixed_load.back() = Slice6{};
+    b.right.resize(count);
+    b.right.back() = Slice6{};
 }
 
 double* row_values(Workspace::Buffers& b)
 {
     return b.rows.data()->v;
+}
+
+}
+
+namespace {
+
+void find_touching(const State& s, Workspace::Buffers& b)
+{
+    b.touching_parts.resize(std::max(b.threads, 1));
+    const auto& candidates = b.neighbours.candidates();
+    with_team(b.threads, [&](const Team& team) {
+        std::vector<int>& found = b.touching_parts[team.rank];
+        found.clear();
+        const Range own = team.share(0, static_cast<int>(candidates.size()));
+        for (int k = own.begin; k < own.end; ++k) {
+            const int pair = b.slices.pair_of[k];
+            if (b.table.geometry[pair / lanes].xi[pair % lanes] <= 0) found.push_back(k);
+        }
+    });
+    b.touching.clear();
+    for (const auto& part : b.touching_parts)
+        b.touching.insert(b.touching.end(), part.begin(), part.end());
+    b.touching_pairs.resize(b.touching.size());
+    for_each(b.threads, b.touching.size(), [&](int k) {
+        const int candidate = b.touching[k];
+        const int pair = b.slices.pair_of[candidate], l = pair % lanes;
+        const PairGeometry& g = b.table.geometry[pair / lanes];
+        const double sign = b.slices.flipped[candidate] ? -1 : 1;
+        const auto [i, j] = candidates[candidate];
+        const Vec3 normal = sign * Vec3(g.nx[l], g.ny[l], g.nz[l]);
+        b.touching_pairs[k] = {i,      j,
+                               static_cast<int>(sign * g.image[l]),
+                               g.distance[l] * normal,
+                               normal, g.distance[l],
+                               g.distance[l] - s.radius[i] - s.radius[j],
+                               g.xi[l]};
+    });
 }
 
 }
@@ -142,28 +183,7 @@ void locate(const State& s, const Model& m, Workspace::Buffers& b)
         });
     });
     if (!good) find_pairs(s, range, b.neighbours);  // throws and says which centres coincide
-    b.touching.clear();
-    for (std::size_t k = 0; k < b.slices.pair_of.size(); ++k) {
-        const int pair = b.slices.pair_of[k];
-        if (b.table.geometry[pair / lanes].xi[pair % lanes] <= 0)
-            b.touching.push_back(static_cast<int>(k));
-    }
-    b.touching_pairs.resize(b.touching.size());
-    const double* radius = s.radius.data();
-    for (std::size_t k = 0; k < b.touching.size(); ++k) {
-        const int candidate = b.touching[k];
-        const int pair = b.slices.pair_of[candidate], l = pair % lanes;
-        const PairGeometry& g = b.table.geometry[pair / lanes];
-        const double sign = b.slices.flipped[candidate] ? -1 : 1;
-        const auto [i, j] = b.neighbours.candidates()[candidate];
-        const Vec3 normal = sign * Vec3(g.nx[l], g.ny[l], g.nz[l]);
-        b.touching_pairs[k] = {i,      j,
-                               static_cast<int>(sign * g.image[l]),
-                               g.distance[l] * normal,
-                               normal, g.distance[l],
-                               g.distance[l] - radius[i] - radius[j],
-                               g.xi[l]};
-    }
+    find_touching(s, b);
     b.position = s.position;
     b.radius = s.radius;
     b.box = s.box;
@@ -274,7 +294,7 @@ Evaluation prepare(const State& s, const Model& model, const Control& control,
     const Stiffness k = stiffness(model, control);
     find_memories(s, b);
     e.contacts.resize(b.touching.size());
-    if (stage) to_slices(*stage->predicted, b.slices, b.right);
+    if (stage) to_slices(*stage->predicted, b.slices, b.right, b.threads);
     fill_drag(s, model, b);
     with_team(b.threads, [&](const Team& team) {
         team.own(b.slices, [&](Range own) {
@@ -424,11 +444,11 @@ void solve_twice(const State& s, const Loads& loads, Workspace& workspace, Evalu
 void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
                    Workspace::Buffers& b, Evaluation& e, double share)
 {
-    history.guess(s.time, b.guess);
+    history.guess(s.time, b.guess, b.threads);
     if (b.guess.empty())
         b.solution.assign(b.slices.count + 1, Slice6{});
     else
-        to_slices(b.guess, b.slices, b.solution);
+        to_slices(b.guess, b.slices, b.solution, b.threads);
     if (const auto* rate = std::get_if<ImposedRate>(&e.control)) {
         e.shear_rate = rate->value;
         combine(b.fixed_load, rate->value, b.unit_load, b.right);
@@ -441,7 +461,7 @@ void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
                                  share);
         e.shear_rate = (free + dot(b.unit_load, b.solution)) / loads.affine;
     }
-    from_slices(b.solution, b.slices, e.nonaffine);
+    from_slices(b.solution, b.slices, e.nonaffine, b.threads);
     if (!e.model.background_drag) remove_drift(s, e.nonaffine);
     history.remember(s.time, e.nonaffine, e.shear_rate);
 }
@@ -452,11 +472,8 @@ void complete(const State& state, int threads, Evaluation& e)
     for (const Vec6& v : e.nonaffine) finite = finite && v.allFinite();
     if (!finite) throw Error(ErrorKind::numerics, "", "the shear rate or a velocity is not finite");
     e.motion.resize(e.contacts.size());
-    with_team(threads, [&](const Team& team) {
-        const Range own = team.share(0, static_cast<int>(e.contacts.size()));
-        for (int c = own.begin; c < own.end; ++c)
-            e.motion[c] = relative_motion(state, e, e.contacts[c].pair);
-    });
+    for_each(threads, e.contacts.size(),
+             [&](int c) { e.motion[c] = relative_motion(state, e, e.contacts[c].pair); });
 }
 
 Evaluation evaluate(const State& state, const Model& model, const Control& control,

@@ -23,16 +23,17 @@ Weights weights(double ratio)
 // Mean motion of a step as seen from its end, where the particles have come `to`, not wrapped.
 // Relative to the flow at those positions it does not change when they are wrapped.
 void find_mean(const Evaluation& past, const State& start, const Evaluation& end,
-               const State& stage, const Weights& w, const State& to, Evaluation& mean)
+               const State& stage, const Weights& w, const State& to, int threads,
+               Evaluation& mean)
 {
     mean.shear_rate = w.past * past.shear_rate + w.end * end.shear_rate;
     mean.nonaffine.resize(start.size());
-    for (int i = 0; i < start.size(); ++i) {
+    for_each(threads, start.position.size(), [&](int i) {
         mean.nonaffine[i] = w.past * past.nonaffine[i] + w.end * end.nonaffine[i];
         mean.nonaffine[i].x() += w.past * past.shear_rate * start.position[i].y() +
                                  w.end * end.shear_rate * stage.position[i].y() -
                                  mean.shear_rate * to.position[i].y();
-    }
+    });
 }
 
 // The step that led to a state, or one of no length that knows the contacts only.
@@ -58,7 +59,7 @@ double foresee(const State& state, const Model& model, const Control& control, d
                Workspace& workspace)
 {
     Workspace::Buffers& b = workspace.buffers();
-    const double rate = b.history.guess(state.time + dt, b.foreseen);
+    const double rate = b.history.guess(state.time + dt, b.foreseen, b.threads);
     if (!b.foreseen.empty()) return rate;
     Evaluation now = evaluate(state, model, control, workspace);
     b.foreseen = now.nonaffine;
@@ -81,18 +82,14 @@ Evaluation implicit_step(State& state, const Model& model, const Control& contro
 
     const double rate = foresee(state, model, control, dt, workspace);
     b.foreseen_motion.resize(before.contacts.size());
-    with_team(b.threads, [&](const Team& team) {
-        const Range own = team.share(0, static_cast<int>(before.contacts.size()));
-        for (int c = own.begin; c < own.end; ++c) {
-            const Pair& pair = before.contacts[c].pair;
-            b.foreseen_motion[c] =
-                relative_motion(state, moving(state, b.foreseen, rate, pair), pair);
-        }
+    for_each(b.threads, before.contacts.size(), [&](int c) {
+        const Pair& pair = before.contacts[c].pair;
+        b.foreseen_motion[c] = relative_motion(state, moving(state, b.foreseen, rate, pair), pair);
     });
     const std::array foreseen{stage_of(before, state, w.past * dt),
                               Stage{b.foreseen, rate, before.contacts, b.foreseen_motion, state,
                                     w.end * dt}};
-    shift(state, foreseen, predicted);
+    shift(state, foreseen, b.threads, predicted);
     move_contacts(foreseen, model, control, predicted, b);
 
     Evaluation end = evaluate_implicitly(
@@ -104,8 +101,8 @@ Evaluation implicit_step(State& state, const Model& model, const Control& contro
     const double time = passes ? left / mean_rate : dt;
     const std::array found{stage_of(before, state, w.past * time),
                            stage_of(end, predicted, w.end * time)};
-    shift(state, found, next);
-    find_mean(before, state, end, predicted, w, next, here.mean);
+    shift(state, found, b.threads, next);
+    find_mean(before, state, end, predicted, w, next, b.threads, here.mean);
     wrap(next.box, next.position);
     move_contacts(found, model, control, next, b, &here.mean);
     if (passes) next.strain = strain_limit;

@@ -36,15 +36,15 @@ private:
 
 }
 
-void shift(const State& start, std::span<const Stage> stages, State& result)
+void shift(const State& start, std::span<const Stage> stages, int threads, State& result)
 {
     result = start;
     for (const Stage& stage : stages) {
         const double strain = stage.shear_rate * stage.dt;
-        for (int i = 0; i < start.size(); ++i) {
+        for_each(threads, start.position.size(), [&](int i) {
             result.position[i] += stage.dt * stage.nonaffine[i].head<3>();
             result.position[i].x() += strain * stage.state.position[i].y();
-        }
+        });
         result.box.offset += strain * start.box.length.y();
         result.strain += strain;
         result.time += stage.dt;

@@ -28,7 +28,7 @@ inline Stage stage_of(const Evaluation& e, const State& state, double dt)
 }
 
 /// Particles, box, strain and time of `start` moved by the stages, not wrapped; its contacts.
-void shift(const State& start, std::span<const Stage> stages, State& result);
+void shift(const State& start, std::span<const Stage> stages, int threads, State& result);
 
 /// Springs of the pairs that touch at the positions of `moved`: those of the first stage carried to
 /// the new contact plane by the smallest rotation, stretched by the slip of all stages, projected

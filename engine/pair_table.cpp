@@ -53,35 +53,39 @@ SIGMAFLOW_INLINE Triple<d8> normal_of(const PairGeometry& g)
 
 }
 
-void make_shapes(const State& state, const Slices& s, PairTable& table)
-{
-    table.shape.assign(s.groups() + 1, PairShape{});
-    table.geometry.assign(s.groups() + 1, PairGeometry{});
-    table.factors.assign(s.groups() + 1, PairFactors{});
-    table.force.assign(s.groups() + 1, PairForce{});
-    table.springs.assign(s.groups() + 1, PairSprings{});
-    // there are few different pairs of radii: the last ones are remembered
+namespace {
+
+/// The resistance scalars of pairs of radii: there are few different ones, the last are remembered.
+class KnownCoefficients {
+public:
+    const lubrication::PairResistance& of(double a, double b)
+    {
+        for (const Known& k : known_)
+            if (k.a == a && k.b == b) return k.c;
+        Known& k = known_[oldest_++ % known_.size()];
+        k = {a, b, lubrication::pair_coefficients(a, b)};
+        return k.c;
+    }
+
+private:
     struct Known {
         double a = 0, b = 0;
         lubrication::PairResistance c;
     };
-    std::array<Known, 4> known;
-    std::size_t oldest = 0;
-    const auto coefficients = [&](double a, double b) -> const lubrication::PairResistance& {
-        for (const Known& k : known)
-            if (k.a == a && k.b == b) return k.c;
-        Known& k = known[oldest++ % known.size()];
-        k = {a, b, lubrication::pair_coefficients(a, b)};
-        return k.c;
-    };
-    for (int pair = 0; pair < s.pairs(); ++pair) {
-        PairShape& shape = table.shape[pair / lanes];
-        const int l = pair % lanes;
+    std::array<Known, 4> known_;
+    std::size_t oldest_ = 0;
+};
+
+PairShape shape_of(const State& state, const Slices& s, int group, KnownCoefficients& known)
+{
+    PairShape shape{};
+    for (int l = 0; l < lanes; ++l) {
+        const int pair = group * lanes + l;
         shape.sum[l] = 1;
         if (s.second[pair] == s.slots()) continue;
         const double a = state.radius[s.particle[s.first[pair]]];
         const double b = state.radius[s.particle[s.second[pair]]];
-        const auto& c = coefficients(a, b);
+        const lubrication::PairResistance& c = known.of(a, b);
         shape.a[l] = a;
         shape.b[l] = b;
         shape.sum[l] = a + b;
@@ -93,6 +97,31 @@ void make_shapes(const State& state, const Slices& s, PairTable& table)
         shape.yc12[l] = c.yc12;
         shape.yc22[l] = c.yc22;
     }
+    return shape;
+}
+
+}
+
+void make_shapes(const State& state, const Slices& s, int threads, PairTable& table)
+{
+    const std::size_t count = s.groups() + 1;
+    table.shape.resize(count);
+    table.geometry.resize(count);
+    table.factors.resize(count);
+    table.force.resize(count);
+    table.springs.resize(count);
+    table.shape.back() = PairShape{};
+    table.geometry.back() = PairGeometry{};
+    table.factors.back() = PairFactors{};
+    table.force.back() = PairForce{};
+    table.springs.back() = PairSprings{};
+    with_team(threads, [&](const Team& team) {
+        KnownCoefficients known;
+        team.own(s, [&](Range own) {
+            for (int g = s.upper[own.begin]; g < s.upper[own.end]; ++g)
+                table.shape[g] = shape_of(state, s, g, known);
+        });
+    });
 }
 
 void write_positions(const State& state, const Slices& s, Range range, double* rows)

@@ -50,7 +50,7 @@ struct PairTable {
 };
 
 /// Makes room and fills the shapes.
-void make_shapes(const State& state, const Slices& slices, PairTable& table);
+void make_shapes(const State& state, const Slices& slices, int threads, PairTable& table);
 
 /// Rows (x, y, z, 0) of the positions, one a slot [slots + 1].
 void write_positions(const State& state, const Slices& slices, Range range, double* rows);

@@ -190,7 +190,7 @@ std::vector<Candidate> close_pairs(const State& state, double range, double skin
 
 bool NeighbourList::update(const State& state, double range, int threads)
 {
-    if (covers(state, range)) return false;
+    if (covers(state, range, threads)) return false;
     rebuild(state, range, threads);
     return true;
 }
@@ -213,7 +213,7 @@ void NeighbourList::rebuild(const State& state, double range, int threads)
 
 // A pair in range now had |d| <= (1 + |strain|)(reach + w_i + w_j) at the rebuild, w =
 // displacements relative to the affine motion since then.
-bool NeighbourList::covers(const State& state, double range)
+bool NeighbourList::covers(const State& state, double range, int threads)
 {
     if (range != range_ || state.radius != reference_.radius ||
         state.box.length != reference_.box.length)
@@ -223,19 +223,30 @@ bool NeighbourList::covers(const State& state, double range)
     const double off = drift - std::round(drift / state.box.length.x()) * state.box.length.x();
     if (std::abs(off) > 1e-9 * state.box.length.x()) return false;
     const Images images(state.box);
-    double first = 0, second = 0;  // the two largest squared displacements
-    for (int i = 0; i < state.size(); ++i) {
-        Vec3 moved = reference_.position[i];
-        moved.x() += strain * moved.y();
-        const double w = images.separation(moved, state.position[i]).d.squaredNorm();
-        if (w > first) {
-            second = first;
-            first = w;
-        } else if (w > second) {
-            second = w;
+    struct Largest {
+        double first = 0, second = 0;  // squared displacements
+        void add(double w)
+        {
+            second = std::max(second, std::min(first, w));
+            first = std::max(first, w);
         }
-    }
-    const double now = reach_ + std::sqrt(first) + std::sqrt(second);
+    };
+    Largest largest;
+    with_team(threads, [&](const Team& team) {
+        const Range own = team.share(0, state.size());
+        Largest mine;
+        for (int i = own.begin; i < own.end; ++i) {
+            Vec3 moved = reference_.position[i];
+            moved.x() += strain * moved.y();
+            mine.add(images.separation(moved, state.position[i]).d.squaredNorm());
+        }
+#pragma omp critical
+        {
+            largest.add(mine.first);
+            largest.add(mine.second);
+        }
+    });
+    const double now = reach_ + std::sqrt(largest.first) + std::sqrt(largest.second);
     used_ = (1 + std::abs(strain)) * now - reach_;
     ++updates_;
     return used_ <= skin_;

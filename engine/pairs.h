@@ -62,7 +62,7 @@ public:
     const std::vector<Candidate>& candidates() const { return candidates_; }
 
 private:
-    bool covers(const State& state, double range);
+    bool covers(const State& state, double range, int threads);
     void rebuild(const State& state, double range, int threads);
 
     std::vector<Candidate> candidates_;

@@ -1,5 +1,7 @@
 #include "engine/slices.h"
 
+#include "engine/team.h"
+
 #include <algorithm>
 
 namespace sigmaflow {
@@ -151,18 +153,24 @@ void SliceMaker::make(const State& state, const std::vector<Candidate>& candidat
     }
 }
 
-void to_slices(const Velocities& v, const Slices& s, SlicedVector& result)
+void to_slices(const Velocities& v, const Slices& s, SlicedVector& result, int threads)
 {
-    result.assign(s.count + 1, Slice6{});
-    for (int i = 0; i < s.particles; ++i)
-        for (int c = 0; c < 6; ++c) result[s.slot[i] / lanes].c[c][s.slot[i] % lanes] = v[i][c];
+    result.resize(s.count + 1);
+    result.back() = Slice6{};
+    for_each(threads, s.count, [&](int k) {
+        for (int l = 0; l < lanes; ++l) {
+            const int i = s.particle[k * lanes + l];
+            for (int c = 0; c < 6; ++c) result[k].c[c][l] = i < 0 ? 0 : v[i][c];
+        }
+    });
 }
 
-void from_slices(const SlicedVector& v, const Slices& s, Velocities& result)
+void from_slices(const SlicedVector& v, const Slices& s, Velocities& result, int threads)
 {
     result.resize(s.particles);
-    for (int i = 0; i < s.particles; ++i)
+    for_each(threads, s.particles, [&](int i) {
         for (int c = 0; c < 6; ++c) result[i][c] = v[s.slot[i] / lanes].c[c][s.slot[i] % lanes];
+    });
 }
 
 double dot(const SlicedVector& u, const SlicedVector& v)

@@ -74,8 +74,8 @@ using SlicedVector = std::vector<Slice6>;
 /// Velocity, then angular velocity (or force, then torque) of every particle [n].
 using Velocities = std::vector<Vec6>;
 
-void to_slices(const Velocities& v, const Slices& slices, SlicedVector& result);
-void from_slices(const SlicedVector& v, const Slices& slices, Velocities& result);
+void to_slices(const Velocities& v, const Slices& slices, SlicedVector& result, int threads = 1);
+void from_slices(const SlicedVector& v, const Slices& slices, Velocities& result, int threads = 1);
 
 double dot(const SlicedVector& u, const SlicedVector& v);
 

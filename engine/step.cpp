@@ -29,13 +29,13 @@ void step(State& state, const Model& model, const Control& control, Scheme schem
     const double dt = march == March::strain ? h / first.shear_rate : h;
     bool lands = march == March::strain;
     const auto arrive = [&](std::span<const Stage> stages) {
-        shift(state, stages, next);
+        shift(state, stages, b.threads, next);
         wrap(next.box, next.position);
         move_contacts(stages, model, control, next, b);
     };
     if (scheme == Scheme::heun) {
         const std::array whole{stage_of(first, state, dt)};
-        shift(state, whole, stage);
+        shift(state, whole, b.threads, stage);
         move_contacts(whole, model, control, stage, b);
         Evaluation second = evaluate(stage, model, control, workspace);
         // a rate that collapses within the step would make the second stage endless

@@ -32,7 +32,7 @@ public:
             return;
         }
         for (int spins = 0; phase_.load(std::memory_order_acquire) == phase; ++spins)
-            if (spins > 20000) std::this_thread::yield();
+            if (spins > 2000) std::this_thread::yield();
     }
 
 private:
@@ -97,6 +97,17 @@ void with_team(int threads, const Work& work)
     SpinBarrier meeting;
 #pragma omp parallel num_threads(threads)
     work(Team{omp_get_thread_num(), omp_get_num_threads(), &meeting});
+}
+
+/// work(k) for k = 0 ... count - 1, on every member a part; few are not worth a team.
+template <class Work>
+void for_each(int threads, std::size_t count, const Work& work)
+{
+    constexpr std::size_t few = 1000;
+    with_team(count < few ? 1 : threads, [&](const Team& team) {
+        const Range own = team.share(0, static_cast<int>(count));
+        for (int k = own.begin; k < own.end; ++k) work(k);
+    });
 }
 
 }

@@ -17,7 +17,7 @@ struct SolutionHistory {
     std::array<Velocities, 2> solution;
 
     /// Leaves v empty if nothing is known; returns the shear rate.
-    double guess(double at, Velocities& v) const;
+    double guess(double at, Velocities& v, int threads) const;
     void remember(double at, const Velocities& v, double shear_rate);
 };
 
@@ -54,6 +54,7 @@ struct Workspace::Buffers {
     bool located = false;
     std::vector<int> touching;          // candidates, ascending
     std::vector<Pair> touching_pairs;  // i < j
+    std::vector<std::vector<int>> touching_parts;  // while they are found, by thread
 
     std::vector<int> memory;                // contact of the state for each touching pair, or -1
     std::vector<Row> rows;                  // of positions or velocities, one a slot

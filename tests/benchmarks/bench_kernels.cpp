@@ -27,8 +27,8 @@ namespace {
 
 using benchmark::Counter;
 
-constexpr double volume_fraction_here = 0.58, stress = 2, displacement = 1e-3;
-constexpr double enlargement = 1.005;
+constexpr double stress = 2;
+constexpr double pre_shear = 0.2;
 constexpr double skin = 0.1;  // [a], about that of a run
 
 Model model()
@@ -41,8 +41,8 @@ Model model()
     return m;
 }
 
-// A packing has no contacts, but they make the forces and most of the ill-conditioning: packed at a
-// lower volume fraction, the spheres are enlarged until they overlap by as much as when sheared.
+// A packing has no contacts, but they make most of the forces and of the ill-conditioning: it is
+// sheared until there are about two a particle.
 // Made once for each size.
 const State& dense_state(int particles)
 {
@@ -52,10 +52,13 @@ const State& dense_state(int particles)
     if (!is_new) return s;
     PackingParameters p;
     p.particles = particles;
-    p.volume_fraction = volume_fraction_here / (enlargement * enlargement * enlargement);
+    p.volume_fraction = 0.58;
     s = random_packing(p);
-    s.box.length /= enlargement;  // the unit of length is the small radius
-    for (Vec3& x : s.position) x /= enlargement;
+    Workspace workspace({SolverKind::pcg, 1e-3});
+    while (s.strain < pre_shear)
+        recycle(advance(s, model(), ImposedStress{stress}, {Scheme::implicit, 1e-2}, {pre_shear},
+                        workspace),
+                workspace);
     return s;
 }
 
@@ -68,7 +71,6 @@ struct Prepared {
 
     Prepared(const State& s, const SolverSettings& settings = {}) : state(s), workspace(settings)
     {
-        prepare_again();
         const Evaluation e = prepare(state, model(), ImposedStress{stress}, nullptr, buffers);
         const Loads loads = assemble_loads(state, e, buffers);
         weight = 1 / loads.affine;
@@ -216,9 +218,7 @@ void lagged_cholesky(benchmark::State& run, double tolerance)
 {
     Prepared before(dense_state(static_cast<int>(run.range(0))));
     State moved = before.state;
-    advance(moved, model(), ImposedStress{stress}, {Scheme::heun, displacement}, {},
-            before.workspace);
-    // the pattern is that of the state before, unless the list was made anew
+    advance(moved, model(), ImposedStress{stress}, {Scheme::heun, 1e-3}, {}, before.workspace);
     Prepared old(before.state), p(moved);
     ResistanceSolver solver({SolverKind::lagged_cholesky, tolerance});
     old.set_pattern(solver);
