@@ -3,6 +3,7 @@
 #include "engine/ambient.h"
 #include "engine/error.h"
 #include "engine/forces/repulsion.h"
+#include "engine/lean_resize.h"
 #include "engine/workspace.h"
 
 #include <algorithm>
@@ -49,7 +50,7 @@ void recycle(Evaluation&& evaluation, Workspace& workspace)
 {
     // a step needs two; copies that callers made must not pile up
     auto& spare = workspace.buffers().spare;
-    if (spare.size() < 4) spare.push_back(std::move(evaluation));
+    if (spare.size() < 2) spare.push_back(std::move(evaluation));
 }
 
 bool uses_dashpot(const Model& m)
@@ -102,7 +103,7 @@ void make_pattern(const State& s, Workspace::Buffers& b)
     make_shapes(s, b.slices, b.threads, b.table);
     const std::size_t count = b.slices.count + 1;
     b.matrix.slices = &b.slices;
-    b.matrix.pairs.resize(b.slices.groups() + 1);
+    lean_resize(b.matrix.pairs, b.slices.groups() + 1);
     b.matrix.pairs.back() = PairGroup{};
     b.matrix.drag.resize(2 * count);
     b.rows.resize(count * lanes);
@@ -141,7 +142,7 @@ void find_touching(const State& s, Workspace::Buffers& b)
     b.touching.clear();
     for (const auto& part : b.touching_parts)
         b.touching.insert(b.touching.end(), part.begin(), part.end());
-    b.touching_pairs.resize(b.touching.size());
+    lean_resize(b.touching_pairs, b.touching.size());
     for_each(b.threads, b.touching.size(), [&](int k) {
         const int candidate = b.touching[k];
         const int pair = b.slices.pair_of[candidate], l = pair % lanes;
@@ -293,7 +294,7 @@ Evaluation prepare(const State& s, const Model& model, const Control& control,
     e.pairs.clear();
     const Stiffness k = stiffness(model, control);
     find_memories(s, b);
-    e.contacts.resize(b.touching.size());
+    lean_resize(e.contacts, b.touching.size());
     if (stage) to_slices(*stage->predicted, b.slices, b.right, b.threads);
     fill_drag(s, model, b);
     with_team(b.threads, [&](const Team& team) {
@@ -471,7 +472,7 @@ void complete(const State& state, int threads, Evaluation& e)
     bool finite = std::isfinite(e.shear_rate);
     for (const Vec6& v : e.nonaffine) finite = finite && v.allFinite();
     if (!finite) throw Error(ErrorKind::numerics, "", "the shear rate or a velocity is not finite");
-    e.motion.resize(e.contacts.size());
+    lean_resize(e.motion, e.contacts.size());
     for_each(threads, e.contacts.size(),
              [&](int c) { e.motion[c] = relative_motion(state, e, e.contacts[c].pair); });
 }

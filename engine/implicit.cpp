@@ -1,5 +1,6 @@
 // The implicit step of step.h.
 #include "engine/ambient.h"
+#include "engine/lean_resize.h"
 #include "engine/motion.h"
 #include "engine/step.h"
 
@@ -81,7 +82,7 @@ Evaluation implicit_step(State& state, const Model& model, const Control& contro
     const Weights w = past.dt > 0 ? weights(dt / past.dt) : Weights{0, 1};
 
     const double rate = foresee(state, model, control, dt, workspace);
-    b.foreseen_motion.resize(before.contacts.size());
+    lean_resize(b.foreseen_motion, before.contacts.size());
     for_each(b.threads, before.contacts.size(), [&](int c) {
         const Pair& pair = before.contacts[c].pair;
         b.foreseen_motion[c] = relative_motion(state, moving(state, b.foreseen, rate, pair), pair);

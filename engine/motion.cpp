@@ -1,5 +1,7 @@
 #include "engine/motion.h"
 
+#include "engine/lean_resize.h"
+
 #include <algorithm>
 #include <array>
 
@@ -57,11 +59,11 @@ void move_contacts(std::span<const Stage> stages, const Model& model, const Cont
     locate(moved, model, b);
     const Stiffness stiff = stiffness(model, control);
     const std::size_t count = b.touching_pairs.size();
-    moved.contacts.resize(count);
-    b.friction_share.resize(count);
+    lean_resize(moved.contacts, count);
+    lean_resize(b.friction_share, count);
     if (mean) {
-        mean->contacts.resize(count);
-        mean->motion.resize(count);
+        lean_resize(mean->contacts, count);
+        lean_resize(mean->motion, count);
     }
     double time = 0;
     for (const Stage& stage : stages) time += stage.dt;

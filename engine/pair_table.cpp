@@ -1,5 +1,6 @@
 #include "engine/pair_table.h"
 
+#include "engine/lean_resize.h"
 #include "engine/lubrication/pair_resistance.h"
 
 #include <array>
@@ -105,11 +106,11 @@ PairShape shape_of(const State& state, const Slices& s, int group, KnownCoeffici
 void make_shapes(const State& state, const Slices& s, int threads, PairTable& table)
 {
     const std::size_t count = s.groups() + 1;
-    table.shape.resize(count);
-    table.geometry.resize(count);
-    table.factors.resize(count);
-    table.force.resize(count);
-    table.springs.resize(count);
+    lean_resize(table.shape, count);
+    lean_resize(table.geometry, count);
+    lean_resize(table.factors, count);
+    lean_resize(table.force, count);
+    lean_resize(table.springs, count);
     table.shape.back() = PairShape{};
     table.geometry.back() = PairGeometry{};
     table.factors.back() = PairFactors{};

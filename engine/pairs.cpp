@@ -2,6 +2,7 @@
 
 #include "engine/error.h"
 #include "engine/lanes.h"
+#include "engine/lean_resize.h"
 #include "engine/team.h"
 
 #include <algorithm>
@@ -176,6 +177,10 @@ void close_pairs(const State& state, double range, double skin, int threads, Pai
         for (int i = own.begin; i < own.end; ++i)
             partners.append(i, cells.wrapped[i], state.radius[i]);
     });
+    std::size_t count = 0;
+    for (const PairSearch::Part& part : search.parts) count += part.found.size();
+    lean_resize(found, count);
+    found.clear();
     for (const PairSearch::Part& part : search.parts)
         found.insert(found.end(), part.found.begin(), part.found.end());
 }

@@ -1,5 +1,7 @@
 #include "engine/pcg.h"
 
+#include "engine/lean_resize.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -246,8 +248,8 @@ template <class V>
 void ConjugateGradients<V>::resize(const Slices& s)
 {
     const std::size_t count = s.count + 1;
-    upper_.resize(s.groups());
-    lower_.resize(s.lower_pair.size() / lanes);
+    lean_resize(upper_, s.groups());
+    lean_resize(lower_, s.lower_pair.size() / lanes);
     diagonal_.resize(count);
     narrow_diagonal_.resize(count);
     if (inverse_.size() != count) age_ = -1;

@@ -1,5 +1,6 @@
 #include "engine/slices.h"
 
+#include "engine/lean_resize.h"
 #include "engine/team.h"
 
 #include <algorithm>
@@ -16,8 +17,8 @@ void SliceMaker::connect(int n, const std::vector<Candidate>& candidates)
     }
     for (int i = 0; i < n; ++i) g.start[i + 1] += g.start[i];
     g.next.assign(g.start.begin(), g.start.end() - 1);
-    g.neighbour.resize(2 * candidates.size());
-    g.candidate.resize(2 * candidates.size());
+    lean_resize(g.neighbour, 2 * candidates.size());
+    lean_resize(g.candidate, 2 * candidates.size());
     for (std::size_t k = 0; k < candidates.size(); ++k) {
         const auto [i, j] = candidates[k];
         g.neighbour[g.next[i]] = j;
@@ -122,10 +123,13 @@ void SliceMaker::make(const State& state, const std::vector<Candidate>& candidat
     }
     s.count = s.colour.back();
 
-    s.pair_of.resize(candidates.size());
-    s.flipped.resize(candidates.size());
-    s.first.clear();
-    s.second.clear();
+    lean_resize(s.pair_of, candidates.size());
+    lean_resize(s.flipped, candidates.size());
+    // unused lanes make the groups longer by about a third
+    for (auto* list : {&s.first, &s.second, &s.lower_pair, &s.lower_slot}) {
+        lean_resize(*list, candidates.size() + candidates.size() / 3);
+        list->clear();
+    }
     s.upper.assign(1, 0);
     for (int slice = 0; slice < s.count; ++slice) {
         find_neighbours(s, slice, true);
@@ -140,8 +144,6 @@ void SliceMaker::make(const State& state, const std::vector<Candidate>& candidat
         });
         s.upper.push_back(s.upper.back() + longest);
     }
-    s.lower_pair.clear();
-    s.lower_slot.clear();
     s.lower.assign(1, 0);
     for (int slice = 0; slice < s.count; ++slice) {
         find_neighbours(s, slice, false);

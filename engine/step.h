@@ -1,11 +1,13 @@
 // engine/step.h -- time stepping: Euler, Heun (predictor-corrector) and a linearly implicit scheme.
 //
 // Box, particles and springs move with the same averaged rates. Euler and Heun are explicit: their
-// step is bound by the stiffness of the contacts. The implicit scheme is the Rosenbrock method ROS2
-// with gamma = 1 - 1/sqrt(2) (Verwer, Spee, Blom, Hundsdorfer, SIAM J. Sci. Comput. 20, 1456,
-// 1999), which is of second order for any approximation of the Jacobian and L-stable for linear
-// springs; the Jacobian here holds the contact springs (engine/implicit.cpp). Friction is not
-// smooth: there the error is of first order with a small coefficient, as for Heun.
+// step is bound by the stiffness of the contacts. The implicit scheme is BDF2 with variable steps
+// (Gear, Numerical Initial Value Problems in Ordinary Differential Equations, 1971; variable steps:
+// Grigorieff, Numer. Math. 42, 359, 1983), linearised about a prediction, with the springs of
+// contacts and repulsion in the matrix (engine/implicit.cpp): one solve a step, second order for
+// smooth motion, L-stable for linear springs. Friction is not smooth: there the error is of first
+// order with a small coefficient, as for Heun. It leans on the step before, which the workspace
+// remembers; without one a step is of first order (backward Euler).
 #pragma once
 #include "engine/evaluation.h"
 #include "engine/model.h"
@@ -43,15 +45,15 @@ double displacement_time_step(const Evaluation& evaluation, double displacement)
 /// up to 2 over that rate.
 double stable_time_step(const Evaluation& evaluation);
 
-/// One implicit step of length dt. If it would pass the strain limit by a few per cent at most,
-/// both stages act for less time, so that the step lands on it. Returns the second stage.
+/// One implicit step of length dt. If it would pass the strain limit by a few per cent at most, its
+/// velocities act for less time, so that the step lands on it. Returns the evaluation at its
+/// (predicted) end.
 Evaluation implicit_step(State& state, const Model& model, const Control& control, double dt,
                          double strain_limit, Workspace& workspace);
 
 /// One adaptive step, shortened to land on the limits exactly; `first` is the evaluation of
 /// `state`, if it is known already. The shear rate may be negative for a while; then the box goes
-/// back. Returns an evaluation of the step: the first stage, or the second one of the implicit
-/// scheme.
+/// back. Returns an evaluation of the step: at its beginning, or at the end of an implicit one.
 Evaluation advance(State& state, const Model& model, const Control& control,
                    const Stepping& stepping, const StepLimit& limit, Workspace& workspace,
                    const Evaluation* first = nullptr);

@@ -119,7 +119,7 @@ void measure(const Options& o, const Model& m, State s, const std::string& name)
         {"displacement", o.displacement},
         {"steps", steps},
         {"ms_per_step", 1e3 * spent / steps},
-        {"ms_per_evaluation", 1e3 * spent / steps / 2},
+        {"ms_per_evaluation", 1e3 * spent / steps / (o.scheme == "heun" ? 2 : 1)},
         {"iterations", static_cast<double>(iterations) / steps},
         {"largest_residual", residual},
         {"fallbacks", fallbacks},

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs bench_step on dense states and prints Markdown tables: solvers and schemes, threads, scaling.
+"""Runs bench_step on dense states and prints Markdown tables: solvers, threads, scaling.
 
     python3 tests/benchmarks/tables.py build/states --json lines.json
 
@@ -38,8 +38,8 @@ class Bench:
 
     def __init__(self, program, json_file):
         if not program.is_file():
-            sys.exit(f"tables.py: {program} is missing; build it (bash workflows/setup.sh bench_step)"
-                     " or name it with --bench")
+            sys.exit(f"tables.py: {program} is missing: build it with "
+                     "'bash workflows/setup.sh bench_step' or name it with --bench")
         self.program = program.resolve()
         self.json_file = json_file
         if json_file:
@@ -85,15 +85,19 @@ def read_peer(path):
     return peer
 
 
+def digits(x):
+    return f"{x:.0f}" if x >= 100 else f"{x:.3g}"
+
+
 def times_faster(line, peer):
     """Per step, for the same kind of step only, and per unit strain."""
     if line["particles"] not in peer:
         return ""
     step, strain = peer[line["particles"]]
-    per_strain = f"strain {strain / line['seconds_per_strain']:.3g}"
+    per_strain = f"strain {digits(strain / line['seconds_per_strain'])}"
     if line["scheme"] == "implicit":
         return per_strain
-    return f"step {step / line['ms_per_step']:.3g}, {per_strain}"
+    return f"step {digits(step / line['ms_per_step'])}, {per_strain}"
 
 
 COLUMNS = {
@@ -104,10 +108,10 @@ COLUMNS = {
     "pairs": lambda line: line["pairs"],
     "contacts": lambda line: f"{line['contact_number']:.2f}",
     "steps": lambda line: line["steps"],
-    "ms per step": lambda line: f"{line['ms_per_step']:.3g}",
-    "us per particle and step": lambda line: f"{1e3 * line['ms_per_step'] / line['particles']:.3g}",
+    "ms per step": lambda line: digits(line['ms_per_step']),
+    "us per particle and step": lambda line: digits(1e3 * line['ms_per_step'] / line['particles']),
     "iterations": lambda line: f"{line['iterations']:.1f}",
-    "s per unit strain": lambda line: f"{line['seconds_per_strain']:.4g}",
+    "s per unit strain": lambda line: digits(line['seconds_per_strain']),
     "core memory [MB]": lambda line: f"{line['core_memory_MB']:.1f}",
     "rate": lambda line: f"{line['mean_shear_rate']:.5f}",
 }
