@@ -114,7 +114,7 @@ Evaluation evaluate(const State& state, const Model& model, const Control& contr
 /// and repulsion are taken where the velocities found bring them, not where the predicted ones did:
 /// each pair resists the difference with `ahead` times its stiffness.
 struct ImplicitStage {
-    double ahead = 0;                     // time for which the velocities act [1/rate0] > 0
+    double ahead = 0;                       // time for which the velocities act [1/rate0] > 0
     const Velocities* predicted = nullptr;  // V that led to the state
     double predicted_rate = 0;
     const std::vector<double>* share = nullptr;  // of each touching pair: its friction over that of
@@ -168,8 +168,8 @@ StressSummary summary_of(const DetailedEvaluation& detailed);
 
 /// An evaluation with the stress, at a fraction of the cost of evaluate_in_detail and accurate to
 /// 1e-7: one solution for the velocities and one for R_FU^-1 f, f = R_FE:Ehat. By reciprocity the
-/// shear stress of the velocities that a force F drives is - F.R_FU^-1 f/V, so that no force needs a
-/// solution of its own. The dashpot variant, which is not reciprocal, is evaluated in detail.
+/// shear stress of the velocities that a force F drives is - F.R_FU^-1 f/V, so that no force needs
+/// a solution of its own. The dashpot variant, which is not reciprocal, is evaluated in detail.
 struct SampledEvaluation {
     Evaluation evaluation;
     StressSummary stress;

@@ -24,8 +24,7 @@ Weights weights(double ratio)
 // Mean motion of a step as seen from its end, where the particles have come `to`, not wrapped.
 // Relative to the flow at those positions it does not change when they are wrapped.
 void find_mean(const Evaluation& past, const State& start, const Evaluation& end,
-               const State& stage, const Weights& w, const State& to, int threads,
-               Evaluation& mean)
+               const State& stage, const Weights& w, const State& to, int threads, Evaluation& mean)
 {
     mean.shear_rate = w.past * past.shear_rate + w.end * end.shear_rate;
     mean.nonaffine.resize(start.size());
@@ -87,9 +86,9 @@ Evaluation implicit_step(State& state, const Model& model, const Control& contro
         const Pair& pair = before.contacts[c].pair;
         b.foreseen_motion[c] = relative_motion(state, moving(state, b.foreseen, rate, pair), pair);
     });
-    const std::array foreseen{stage_of(before, state, w.past * dt),
-                              Stage{b.foreseen, rate, before.contacts, b.foreseen_motion, state,
-                                    w.end * dt}};
+    const std::array foreseen{
+        stage_of(before, state, w.past * dt),
+        Stage{b.foreseen, rate, before.contacts, b.foreseen_motion, state, w.end * dt}};
     shift(state, foreseen, b.threads, predicted);
     move_contacts(foreseen, model, control, predicted, b);
 

@@ -2,7 +2,7 @@
 //
 // Compiler vectors: on processors with narrower registers the compiler splits them. Functions
 // marked SIGMAFLOW_HOT are compiled for several instruction sets and chosen when the program
-// starts; everything they call must be SIGMAFLOW_INLINE. CMake option SIGMAFLOW_LEVELS, for
+// starts; everything they call must be SIGMAFLOW_INLINE. The macro SIGMAFLOW_LEVELS, for
 // measurements, replaces the list of instruction sets.
 #pragma once
 #include <cstddef>
@@ -160,8 +160,7 @@ SIGMAFLOW_INLINE void write_rows(const Triple<V>& u, const Triple<V>& w, V* rows
                     __builtin_shufflevector(u.z, w.z, 0, 1, 2, 3, 8, 9, 10, 11), rows);
     write_four_rows(__builtin_shufflevector(u.x, w.x, 4, 5, 6, 7, 12, 13, 14, 15),
                     __builtin_shufflevector(u.y, w.y, 4, 5, 6, 7, 12, 13, 14, 15),
-                    __builtin_shufflevector(u.z, w.z, 4, 5, 6, 7, 12, 13, 14, 15),
-                    rows + 4);
+                    __builtin_shufflevector(u.z, w.z, 4, 5, 6, 7, 12, 13, 14, 15), rows + 4);
 }
 
 /// Three neighbouring values of rows of `Width` doubles of eight particles.

@@ -35,8 +35,8 @@ SIGMAFLOW_INLINE d8 pick(const Group* groups, const int* pair, int member)
 {
     d8 v;
     for (int l = 0; l < lanes; ++l)
-        v[l] = reinterpret_cast<const double*>(groups + pair[l] / lanes)[member * lanes +
-                                                                         pair[l] % lanes];
+        v[l] = reinterpret_cast<const double*>(groups +
+                                               pair[l] / lanes)[member * lanes + pair[l] % lanes];
     return v;
 }
 
@@ -210,10 +210,9 @@ void find_repulsion_springs(const Slices& s, const Model& m, double ahead, Range
 {
     const d8 zero{};
     for (int g = s.upper[range.begin]; g < s.upper[range.end]; ++g)
-        table.springs[g] = {table.geometry[g].xi > 0
-                                ? ahead / m.debye_length * table.factors[g].repulsion
-                                : zero,
-                            zero, zero};
+        table.springs[g] = {
+            table.geometry[g].xi > 0 ? ahead / m.debye_length * table.factors[g].repulsion : zero,
+            zero, zero};
 }
 
 SIGMAFLOW_HOT void add_predicted_motion(const Slices& s, const double* rows, double rate,
@@ -233,8 +232,7 @@ SIGMAFLOW_HOT void add_predicted_motion(const Slices& s, const double* rows, dou
             const Triple<d8> e{0.5 * n.y, 0.5 * n.x, d8{}};
             du = du - rate * shape.sum * e;
             const d8 along = dot(n, du);
-            const Triple<d8> slip =
-                du - along * n - cross(n, shape.a * wi + shape.b * wj);
+            const Triple<d8> slip = du - along * n - cross(n, shape.a * wi + shape.b * wj);
             const Triple<d8> friction = spring.shear * slip;
             const Triple<d8> force = spring.normal * along * n + friction;
             const Triple<d8> turning = wi - wj;
@@ -255,7 +253,7 @@ SIGMAFLOW_HOT void fill_matrix(const Slices& s, const PairTable& table, bool wit
         const PairShape& c = table.shape[g];
         const PairFactors& f = table.factors[g];
         const PairGeometry& n = table.geometry[g];
-        PairGroup p{n.nx,          n.ny,           n.nz,           f.L * c.xa,    f.l * c.ya,
+        PairGroup p{n.nx,         n.ny,         n.nz,         f.L * c.xa,   f.l * c.ya,
                     f.l * c.yb11, f.l * c.yb21, f.l * c.yc11, f.l * c.yc12, f.l * c.yc22};
         if (with_springs) {
             const PairSprings& spring = table.springs[g];
@@ -287,7 +285,7 @@ SIGMAFLOW_HOT void sum_loads(const Slices& s, const PairTable& table, const Resi
             const PairGroup& p = m.pairs[g];
             const PairForce& f = table.force[g];
             const Triple<d8> n{p.nx, p.ny, p.nz}, e{0.5 * n.y, 0.5 * n.x, zero};
-            const d8 drive = touching_drive ? shape.sum
+            const d8 drive = touching_drive             ? shape.sum
                              : table.geometry[g].xi > 0 ? shape.sum
                                                         : zero;
             const d8 along = n.x * n.y;
@@ -304,7 +302,7 @@ SIGMAFLOW_HOT void sum_loads(const Slices& s, const PairTable& table, const Resi
             const d8 xa = pick(m.pairs.data(), pair, 3), ya = pick(m.pairs.data(), pair, 4),
                      yb21 = pick(m.pairs.data(), pair, 6);
             const d8 b = pick(table.shape.data(), pair, 1), sum = pick(table.shape.data(), pair, 2);
-            const d8 drive = touching_drive ? sum
+            const d8 drive = touching_drive                             ? sum
                              : pick(table.geometry.data(), pair, 4) > 0 ? sum
                                                                         : zero;
             const Triple<d8> e{0.5 * n.y, 0.5 * n.x, zero};

@@ -68,10 +68,10 @@ void find_factors(const Slices& slices, const Model& model, const Stiffness& sti
 void find_repulsion_springs(const Slices& slices, const Model& model, double ahead, Range range,
                             PairTable& table);
 
-/// Adds what the springs resist to the predicted motion (rows of V, shear rate), and its part of the
-/// shear moment.
+/// Adds what the springs resist to the predicted motion (rows of V, shear rate), and its part of
+/// the shear moment.
 void add_predicted_motion(const Slices& slices, const double* rows, double shear_rate, Range range,
-                        PairTable& table, D8* moment);
+                          PairTable& table, D8* moment);
 
 /// Pairs of the matrix: lubrication, and springs if asked.
 void fill_matrix(const Slices& slices, const PairTable& table, bool with_springs, Range range,

@@ -110,13 +110,12 @@ public:
             centre.x() -= image * box_.offset;
             centre.y() -= image * box_.length.y();
             const int first = static_cast<int>(std::floor((centre.x() - reach_) / width));
-            const int last =
-                std::min(static_cast<int>(std::floor((centre.x() + reach_) / width)),
-                         first + cells_.nx - 1);
+            const int last = std::min(static_cast<int>(std::floor((centre.x() + reach_) / width)),
+                                      first + cells_.nx - 1);
             for (int layer = cz - 1; layer <= cz + 1; ++layer) {
                 const int round = layer < 0 ? -1 : layer >= cells_.nz ? 1 : 0;
-                const int home = cells_.index(0, periodic(row, cells_.ny),
-                                              periodic(layer, cells_.nz));
+                const int home =
+                    cells_.index(0, periodic(row, cells_.ny), periodic(layer, cells_.nz));
                 Vec3 from = centre;
                 from.z() -= round * box_.length.z();
                 for (int column = first; column <= last;) {  // as far as cells lie in a line
@@ -135,8 +134,7 @@ public:
 private:
     void take(int i, const Vec3& from, double radius, int begin, int end)
     {
-        excess_distances(cells_, begin, end, from, radius, factor_, skin_,
-                         part_.excess.data());
+        excess_distances(cells_, begin, end, from, radius, factor_, skin_, part_.excess.data());
         for (int k = begin; k < end; ++k)
             if (part_.excess[k - begin] < 0 && cells_.particle[k] > i)
                 part_.partners.push_back(cells_.particle[k]);
@@ -275,9 +273,7 @@ void find_pairs(const State& s, double range, const NeighbourList& list, std::ve
                             std::to_string(j) + " coincide or are not finite");
         const double r = std::sqrt(r2);
         const double xi = 2 * (r - sum) / sum;
-        if (xi < range)
-            pairs.push_back(
-                {i, j, sep.image, sep.d, sep.d / r, r, r - sum, xi});
+        if (xi < range) pairs.push_back({i, j, sep.image, sep.d, sep.d / r, r, r - sum, xi});
     }
 }
 

@@ -11,14 +11,14 @@ namespace sigmaflow {
 namespace {
 
 constexpr int factor_lifetime = 10;  // solves at most
-constexpr int aged = 2;               // iterations more than with the fresh factor
+constexpr int aged = 2;              // iterations more than with the fresh factor
 constexpr int most_iterations = 2000;
 constexpr int most_corrections = 40;
 // least residual after one correction, relative
 template <class V>
 constexpr double reduction = sizeof(Scalar<V>) == 4 ? 1e-4 : 1e-10;
-constexpr int patience = 60;       // iterations without progress
-constexpr double margin = 0.8;     // of the goal: what a correction aims at
+constexpr int patience = 60;           // iterations without progress
+constexpr double margin = 0.8;         // of the goal: what a correction aims at
 constexpr double least_pivot = 1e-12;  // relative; less is rounding
 constexpr double least_drag = 0.02;    // single precision cannot resolve less [eta0 a, eta0 a^3]
 
@@ -132,8 +132,8 @@ struct ConjugateGradients<V>::Sweep {
     Lanes<V>* second_partial;
 
     // load -= off-diagonal block times the velocities of the other particles
-    SIGMAFLOW_INLINE static void subtract_block(const OwnGroup& g, const V* rows,
-                                                const int* slot, Motion<V>& load)
+    SIGMAFLOW_INLINE static void subtract_block(const OwnGroup& g, const V* rows, const int* slot,
+                                                Motion<V>& load)
     {
         Motion<V> v;
         gather_rows(rows, slot, v.u, v.w);
@@ -272,8 +272,9 @@ SIGMAFLOW_HOT void ConjugateGradients<V>::load(const ResistanceMatrix& m, Range 
     for (int k = range.begin; k < range.end; ++k) {
         for (int g = s.upper[k]; g < s.upper[k + 1]; ++g) {
             const PairGroup& p = m.pairs[g];
-            upper_[g] = {narrowed<V>(p.nx), narrowed<V>(p.ny),   narrowed<V>(p.nz),   narrowed<V>(p.ya - p.xa),
-                         narrowed<V>(p.ya), narrowed<V>(p.yb21), narrowed<V>(p.yb11), narrowed<V>(p.yc12)};
+            upper_[g] = {narrowed<V>(p.nx),        narrowed<V>(p.ny),  narrowed<V>(p.nz),
+                         narrowed<V>(p.ya - p.xa), narrowed<V>(p.ya),  narrowed<V>(p.yb21),
+                         narrowed<V>(p.yb11),      narrowed<V>(p.yc12)};
         }
         for (int g = s.lower[k]; g < s.lower[k + 1]; ++g) {
             OwnGroup& own = lower_[g];
@@ -397,7 +398,8 @@ SIGMAFLOW_HOT void ConjugateGradients<V>::factorise(const ResistanceMatrix& m, R
 
 template <class V>
 bool ConjugateGradients<V>::solve(const ResistanceProblem& problem, const SlicedVector& b,
-                               SlicedVector& x, double tolerance, int threads, SolveReport& report)
+                                  SlicedVector& x, double tolerance, int threads,
+                                  SolveReport& report)
 {
     resize(*problem.matrix.slices);
     bool good = false;
@@ -452,8 +454,8 @@ SIGMAFLOW_HOT void product(const SlicedVector& v, const SlicedVector& w, Range r
 // Every member of the team goes through all of this and decides the same, from the same sums.
 template <class V>
 bool ConjugateGradients<V>::work(const ResistanceProblem& problem, const SlicedVector& b,
-                              SlicedVector& x, double tolerance, int most, const Team& team,
-                              SolveReport& report)
+                                 SlicedVector& x, double tolerance, int most, const Team& team,
+                                 SolveReport& report)
 {
     const ResistanceMatrix& matrix = problem.matrix;
     const Slices& s = *matrix.slices;
@@ -495,8 +497,8 @@ bool ConjugateGradients<V>::work(const ResistanceProblem& problem, const SlicedV
                 &rows_.data()->v,
                 partial_.data(),
                 partial_.data() + stride};
-    for (Slice** v : {&sweep.p, &sweep.r, &sweep.z, &sweep.t, &sweep.u, &sweep.q, &sweep.Dq,
-                      &sweep.x})
+    for (Slice** v :
+         {&sweep.p, &sweep.r, &sweep.z, &sweep.t, &sweep.u, &sweep.q, &sweep.Dq, &sweep.x})
         *v = vector();
     Slice* right = vector();
     Slice* f = vector();
@@ -558,8 +560,7 @@ bool ConjugateGradients<V>::work(const ResistanceProblem& problem, const SlicedV
         before = now;
 
         own_slices([&](int k) { sweep.p[k] = sweep.x[k] = Slice{}; });
-        const double enough =
-            std::max(margin * goal / r2, reduction<V> * reduction<V> * start);
+        const double enough = std::max(margin * goal / r2, reduction<V> * reduction<V> * start);
         double rho = start, beta = 0, best = start;
         bool reached = true;
         for (int since_best = 0; rho > enough; ++since_best) {

@@ -1,10 +1,11 @@
 // engine/pcg.h -- conjugate gradients for (K - w f f^T) x = b, K = L + A_D + L^T in 6x6 blocks.
 //
 // Iterative refinement: the residual is computed in double precision, and its correction in the
-// precision of V (f8: single, d8: double) by conjugate gradients (Wilkinson, Rounding Errors in Algebraic Processes, 1963; mixed
-// precision: Carson & Higham, SIAM J. Sci. Comput. 40, A817, 2018), until the residual is small
-// enough: with f8 the result has the accuracy that is asked for, and most of the work half the
-// memory. Nearly jammed states are too ill-conditioned for single precision.
+// precision of V (f8: single, d8: double) by conjugate gradients (Wilkinson, Rounding Errors in
+// Algebraic Processes, 1963; mixed precision: Carson & Higham, SIAM J. Sci. Comput. 40, A817,
+// 2018), until the residual is small enough: with f8 the result has the accuracy that is asked for,
+// and most of the work half the memory. Nearly jammed states are too ill-conditioned for single
+// precision.
 //
 // Preconditioner M = (D + L) D^-1 (D + L)^T with the blocks D of the diagonal-based incomplete
 // factor,
@@ -59,8 +60,8 @@ private:
     bool work(const ResistanceProblem& problem, const SlicedVector& b, SlicedVector& x,
               double tolerance, int most, const Team& team, SolveReport& report);
 
-    bool indefinite_ = false;  // a diagonal block of the matrix is not positive definite
-    int age_ = -1;  // solves since the factor was made; -1: there is none
+    bool indefinite_ = false;   // a diagonal block of the matrix is not positive definite
+    int age_ = -1;              // solves since the factor was made; -1: there is none
     int fresh_iterations_ = 0;  // of the first solve with it
     std::vector<OwnGroup> upper_, lower_;
     std::vector<DiagonalSlice<d8>> diagonal_;

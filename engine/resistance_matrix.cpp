@@ -19,8 +19,8 @@ SIGMAFLOW_INLINE OwnGroup seen_by_second(const PairGroup* groups, const int* pai
 {
     OwnGroup o;
     for (int l = 0; l < lanes; ++l) {
-        const double* p = reinterpret_cast<const double*>(groups + pair[l] / lanes) +
-                          pair[l] % lanes;
+        const double* p =
+            reinterpret_cast<const double*>(groups + pair[l] / lanes) + pair[l] % lanes;
         o.n.x[l] = -p[0 * lanes];
         o.n.y[l] = -p[1 * lanes];
         o.n.z[l] = -p[2 * lanes];
@@ -45,8 +45,8 @@ SIGMAFLOW_INLINE void subtract_pair(const OwnGroup& o, const Motion& own, const 
 {
     const Triple<d8> du = own.u - other.u;
     const Triple<d8> normal = dot(o.n, du) * o.n;
-    const Triple<d8> force = o.xa * normal + o.ya * (du - normal) +
-                             cross(o.n, o.yb_own * own.w + o.yb_other * other.w);
+    const Triple<d8> force =
+        o.xa * normal + o.ya * (du - normal) + cross(o.n, o.yb_own * own.w + o.yb_other * other.w);
     const Triple<d8> turn = o.yc_own * own.w + o.yc_cross * other.w;
     const Triple<d8> torque = turn - dot(o.n, turn) * o.n - o.yb_own * cross(o.n, du);
     load.u = load.u - force;
@@ -138,8 +138,7 @@ SIGMAFLOW_HOT void diagonal_blocks(const ResistanceMatrix& m, Range range,
             b.translation[c] = m.drag[2 * k].v;
             b.rotation[c] = m.drag[2 * k + 1].v;
         }
-        for (int g = s.upper[k]; g < s.upper[k + 1]; ++g)
-            add_block(seen_by_first(m.pairs[g]), b);
+        for (int g = s.upper[k]; g < s.upper[k + 1]; ++g) add_block(seen_by_first(m.pairs[g]), b);
         for (int g = s.lower[k]; g < s.lower[k + 1]; ++g)
             add_block(seen_by_second(m.pairs.data(), s.lower_pair.data() + g * lanes), b);
         blocks[k] = b;
@@ -155,8 +154,7 @@ Mat6 diagonal_block(const DiagonalSlice<d8>* blocks, int slot)
         m << v[0][l], v[3][l], v[4][l], v[3][l], v[1][l], v[5][l], v[4][l], v[5][l], v[2][l];
         return m;
     };
-    const Mat3 coupling =
-        cross_matrix(Vec3(b.coupling[0][l], b.coupling[1][l], b.coupling[2][l]));
+    const Mat3 coupling = cross_matrix(Vec3(b.coupling[0][l], b.coupling[1][l], b.coupling[2][l]));
     Mat6 m;
     m << symmetric(b.translation), coupling, -coupling, symmetric(b.rotation);
     return m;

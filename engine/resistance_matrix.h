@@ -19,11 +19,6 @@ struct alignas(64) PairGroup {
     d8 nx, ny, nz, xa, ya, yb11, yb21, yc11, yc12, yc22;
 };
 
-/// The scalars of one pair.
-struct PairScalars {
-    double xa = 0, ya = 0, yb11 = 0, yb21 = 0, yc11 = 0, yc12 = 0, yc22 = 0;
-};
-
 /// Diagonal blocks of eight particles: symmetric parts of translation and rotation
 /// (xx, yy, zz, xy, xz, yz), and their coupling, which is the cross product with one vector,
 /// because it is a sum of such products.
@@ -35,8 +30,8 @@ struct alignas(64) DiagonalSlice {
 
 struct ResistanceMatrix {
     const Slices* slices = nullptr;
-    std::vector<D8> drag;           // [2 count]: translation, then rotation of every slice
-    std::vector<PairGroup> pairs;   // [groups + 1], the last one zero
+    std::vector<D8> drag;          // [2 count]: translation, then rotation of every slice
+    std::vector<PairGroup> pairs;  // [groups + 1], the last one zero
 
     int size() const { return slices->particles; }
 };

@@ -100,7 +100,8 @@ void SliceMaker::make(const State& state, const std::vector<Candidate>& candidat
         ++degree_[i][colour_[j] > colour_[i]];
         ++degree_[j][colour_[i] > colour_[j]];
     }
-    // neighbours in memory should be neighbours in space, and members of a team have different parts
+    // neighbours in memory should be neighbours in space, and members of a team have different
+    // parts
     const int block = std::clamp(n / 8, 64, 2048);
     rank_.resize(n);
     for (int k = 0; k < n; ++k) rank_[order_[k]] = k / block;

@@ -60,7 +60,7 @@ private:
 
     Graph graph_;
     std::vector<int> order_, colour_, used_by_, rank_, sorted_;
-    std::vector<std::array<int, 2>> degree_;        // earlier and later neighbours
+    std::vector<std::array<int, 2>> degree_;       // earlier and later neighbours
     std::array<std::vector<Entry>, lanes> lists_;  // of the lanes of one slice
 };
 

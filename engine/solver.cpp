@@ -10,7 +10,7 @@ namespace sigmaflow {
 namespace {
 
 constexpr int precise_solves = 50;
-constexpr int aged = 8;            // iterations from which a new factor is cheaper
+constexpr int aged = 8;               // iterations from which a new factor is cheaper
 constexpr int most_iterations = 200;  // with an old factor
 
 // v += s w
@@ -142,8 +142,7 @@ bool ResistanceSolver::Impl::iterate_with_factor(const ResistanceProblem& proble
         precondition(residual);
         const double next = dot(residual, z);
         for (std::size_t k = 0; k < search.size(); ++k)
-            for (int c = 0; c < 6; ++c)
-                search[k].c[c] = z[k].c[c] + next / rho * search[k].c[c];
+            for (int c = 0; c < 6; ++c) search[k].c[c] = z[k].c[c] + next / rho * search[k].c[c];
         rho = next;
         ++report.iterations;
     }

@@ -94,8 +94,7 @@ Evaluation advance_implicitly(State& state, const Model& model, const Control& c
         const Evaluation start = first ? *first : evaluate(state, model, control, workspace);
         dt = first_share * displacement_time_step(start, stepping.displacement);
     }
-    const double known_rate =
-        first ? first->shear_rate : workspace.buffers().history.rate[0];
+    const double known_rate = first ? first->shear_rate : workspace.buffers().history.rate[0];
     for (;;) {
         double h = shortened(dt, limit.time - state.time);
         const double left = limit.strain - state.strain;
@@ -108,8 +107,7 @@ Evaluation advance_implicitly(State& state, const Model& model, const Control& c
         const double proposed = displacement_time_step(second, stepping.displacement);
         const bool passed = next.strain > limit.strain + 1e-12;
         if (h <= accepted_excess * proposed && !passed) {
-            next.time_step =
-                std::min({proposed, growth * dt, longest_time_step(control)});
+            next.time_step = std::min({proposed, growth * dt, longest_time_step(control)});
             std::swap(state, next);
             return second;
         }

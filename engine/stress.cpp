@@ -118,8 +118,7 @@ void visit_pair_stress(const State& s, const DetailedEvaluation& d, const Visit&
         visit(repulsion_RSU, pair, no_stresslet, stresslet(column_repulsion));
     }
     for (const ContactLoad& c : e.contacts)
-        visit(contact_xF, c.pair, no_stresslet,
-              virial(s, c.pair, c.force_on_i));
+        visit(contact_xF, c.pair, no_stresslet, virial(s, c.pair, c.force_on_i));
 }
 
 // eqs. 2 and 3 of the paper
@@ -194,7 +193,8 @@ double work(const PairLoad& load, const Pair& pair, const Velocities& v)
            load.force_j.dot(v[pair.j].head<3>()) + load.torque_j.dot(v[pair.j].tail<3>());
 }
 
-// Total stress from the velocities, and its shear components by origin from those of the flow alone.
+// Total stress from the velocities, and its shear components by origin from those of the flow
+// alone.
 StressSummary summarise(const State& s, const Evaluation& e, const Velocities& hydrodynamic)
 {
     StressSummary sum;
@@ -214,9 +214,8 @@ StressSummary summarise(const State& s, const Evaluation& e, const Velocities& h
         const auto r = resistance(s, p);
         const PairStresslet flow_part = lubrication::strain_stresslet(r, p.pair.normal, E);
         lubrication += sum_of(flow_part) +
-                       sum_of(lubrication::velocity_stresslet(r, p.pair.normal,
-                                                              e.nonaffine[p.pair.i],
-                                                              e.nonaffine[p.pair.j]));
+                       sum_of(lubrication::velocity_stresslet(
+                           r, p.pair.normal, e.nonaffine[p.pair.i], e.nonaffine[p.pair.j]));
         sum.hydrodynamic +=
             sum_of(flow_part)(flow, gradient) -
             work(lubrication::strain_load(r, p.pair.normal, E), p.pair, hydrodynamic);
@@ -259,8 +258,7 @@ SampledEvaluation evaluate_sample(const State& state, const Model& model, const 
         to_slices(b.hydrodynamic, b.slices, b.other_solution);
     else
         b.other_solution.clear();
-    const SolveReport flow_alone =
-        b.solver.solve({b.matrix}, b.unit_load, b.other_solution, share);
+    const SolveReport flow_alone = b.solver.solve({b.matrix}, b.unit_load, b.other_solution, share);
     e.solve.iterations += flow_alone.iterations;
     e.solve.residual = std::max(e.solve.residual, flow_alone.residual);
     e.solve.fell_back = e.solve.fell_back || flow_alone.fell_back;

@@ -24,7 +24,7 @@ struct SolutionHistory {
 /// Mean motion over an implicit step, as seen from its end: the next step leans on it.
 struct PastStep {
     double time = -1, dt = 0;  // at its end; its length
-    Evaluation mean;                       // nonaffine, shear_rate, contacts, motion
+    Evaluation mean;           // nonaffine, shear_rate, contacts, motion
 };
 
 /// Rows of eight doubles, aligned.
@@ -33,7 +33,8 @@ struct alignas(64) Row {
 };
 
 struct Workspace::Buffers {
-    explicit Buffers(const SolverSettings& settings) : solver(settings), tolerance(settings.tolerance), threads(settings.threads)
+    explicit Buffers(const SolverSettings& settings)
+        : solver(settings), tolerance(settings.tolerance), threads(settings.threads)
     {
     }
 
@@ -52,23 +53,24 @@ struct Workspace::Buffers {
     Box box;
     double range = -1;
     bool located = false;
-    std::vector<int> touching;          // candidates, ascending
-    std::vector<Pair> touching_pairs;  // i < j
+    std::vector<int> touching;                     // candidates, ascending
+    std::vector<Pair> touching_pairs;              // i < j
     std::vector<std::vector<int>> touching_parts;  // while they are found, by thread
 
-    std::vector<int> memory;                // contact of the state for each touching pair, or -1
-    std::vector<Row> rows;                  // of positions or velocities, one a slot
-    std::vector<D8> moment, affine;         // partial sums of the slices
-    SlicedVector unit_load, fixed_load;     // per unit rate, rate free
+    std::vector<int> memory;  // contact of the state for each touching pair, or -1
+    double* row_values() { return rows.data()->v; }
+    std::vector<Row> rows;               // of positions or velocities, one a slot
+    std::vector<D8> moment, affine;      // partial sums of the slices
+    SlicedVector unit_load, fixed_load;  // per unit rate, rate free
     SlicedVector right, solution, other_solution;
     Velocities guess, foreseen, hydrodynamic;  // the last one: R_FU^-1 f of the last sample
     std::vector<ContactMotion> foreseen_motion;
-    std::vector<Evaluation> spare;          // of earlier steps: their memory is used again
-    std::array<State, 2> moved;             // stages of a step
-    State trial;                            // of a step that may be undone
+    std::vector<Evaluation> spare;  // of earlier steps: their memory is used again
+    std::array<State, 2> moved;     // stages of a step
+    State trial;                    // of a step that may be undone
     SolutionHistory history;
-    std::array<PastStep, 2> past;           // implicit steps: the last one, and one before or undone
-    std::vector<double> friction_share;     // of the touching pairs after the last move
+    std::array<PastStep, 2> past;        // implicit steps: the last one, and one before or undone
+    std::vector<double> friction_share;  // of the touching pairs after the last move
 };
 
 bool uses_dashpot(const Model& model);

@@ -155,8 +155,7 @@ public:
             if (!last_) return std::move(sampled.evaluation);
         }
         DetailedEvaluation detailed = evaluate_in_detail(state, model, task_.control, workspace);
-        if (!has_sample_ && (on_grid || last_))
-            write_sample(make_sample(state, detailed), on_grid);
+        if (!has_sample_ && (on_grid || last_)) write_sample(make_sample(state, detailed), on_grid);
         write_frame(state, detailed);
         return std::move(detailed.evaluation);
     }

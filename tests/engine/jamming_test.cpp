@@ -17,8 +17,8 @@ bool jams(State& s, double stress, double strain, double time, JammingWindow& wi
     JammingMonitor monitor(stress);
     const Model model;
     while (s.strain < strain && s.time < time) {
-        const Evaluation e = advance(s, model, ImposedStress{stress}, stepping, {strain, time},
-                                     workspace);
+        const Evaluation e =
+            advance(s, model, ImposedStress{stress}, stepping, {strain, time}, workspace);
         if (monitor.observe(s, e)) {
             window = monitor.last_window();
             return true;
@@ -57,8 +57,7 @@ TEST_P(StiffCorner, ASuspensionThatCannotFlowComesToRest)
     EXPECT_LT(s.strain, 0.5);
     EXPECT_LT(window.force_residual, 0.01);
     Workspace workspace;
-    const Sample sample =
-        make_sample(s, evaluate_in_detail(s, {}, ImposedStress{20}, workspace));
+    const Sample sample = make_sample(s, evaluate_in_detail(s, {}, ImposedStress{20}, workspace));
     EXPECT_NEAR((sample.stress_contact + sample.stress_repulsion) / 20, 1, 1e-3);
 }
 

@@ -1,8 +1,8 @@
 #include "engine/slices.h"
 
+#include "engine/forces/repulsion.h"
 #include "engine/pair_table.h"
 #include "engine/workspace.h"
-#include "engine/forces/repulsion.h"
 #include "tests/support/random_state.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,8 @@ TEST_P(SlicesOf, EveryPairIsMetOnceFromEitherSide)
     const Slices& slices = s.slices;
     for (std::size_t k = 0; k < s.candidates.size(); ++k) {
         const int pair = slices.pair_of[k];
-        int first = slices.particle[slices.first[pair]], second = slices.particle[slices.second[pair]];
+        int first = slices.particle[slices.first[pair]],
+            second = slices.particle[slices.second[pair]];
         EXPECT_LT(slices.first[pair], slices.second[pair]);
         if (slices.flipped[k]) std::swap(first, second);
         EXPECT_EQ(first, s.candidates[k].i);

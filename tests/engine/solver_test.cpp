@@ -102,7 +102,9 @@ TEST_P(EverySolver, FindsTheDenseSolution)
     const SolveReport report = solver.solve({p.matrix}, p.b, x);
     EXPECT_LT((dense(x, p.slices()) - expected).norm(), 1e-9 * expected.norm());
     EXPECT_FALSE(report.fell_back);
-    const double residual = (dense(p.b, p.slices()) - dense(p.matrix) * dense(x, p.slices())).norm() / dense(p.b, p.slices()).norm();
+    const double residual =
+        (dense(p.b, p.slices()) - dense(p.matrix) * dense(x, p.slices())).norm() /
+        dense(p.b, p.slices()).norm();
     EXPECT_NEAR(report.residual, residual, 1e-3 * residual + 1e-14);
 }
 
@@ -155,7 +157,8 @@ TEST_P(EverySolver, AMatrixThatIsNotPositiveDefiniteIsAnErrorThatNamesAParticle)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver, testing::Values(SolverKind::pcg, SolverKind::cholesky,
+INSTANTIATE_TEST_SUITE_P(Kinds, EverySolver,
+                         testing::Values(SolverKind::pcg, SolverKind::cholesky,
                                          SolverKind::lagged_cholesky),
                          [](const auto& kind) {
                              return kind.param == SolverKind::pcg        ? "pcg"
