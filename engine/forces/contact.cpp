@@ -14,7 +14,7 @@ struct Limited {
 };
 
 // Force of a tangential spring, rescaled to `target` if it exceeds `limit`.
-Limited limited(const Vec3& stretch, const Vec3& normal, double stiffness, double limit,
+inline Limited limited(const Vec3& stretch, const Vec3& normal, double stiffness, double limit,
                 double target)
 {
     const Vec3 t = stretch - stretch.dot(normal) * normal;
