@@ -480,26 +480,23 @@ bool ConjugateGradients<V>::work(const ResistanceProblem& problem, const SlicedV
     if (indefinite_) return false;
     Slice* next = work_.data();
     const auto vector = [&] { return std::exchange(next, next + stride); };
-    Sweep sweep{&s,
-                upper_.data(),
-                lower_.data(),
-                narrow_diagonal_.data(),
-                inverse_.data(),
-                nullptr,
-                nullptr,
-                nullptr,
-                nullptr,
-                nullptr,
-                nullptr,
-                nullptr,
-                nullptr,
-                nullptr,
-                &rows_.data()->v,
-                partial_.data(),
-                partial_.data() + stride};
-    for (Slice** v :
-         {&sweep.p, &sweep.r, &sweep.z, &sweep.t, &sweep.u, &sweep.q, &sweep.Dq, &sweep.x})
-        *v = vector();
+    Sweep sweep{.slices = &s,
+                .upper = upper_.data(),
+                .lower = lower_.data(),
+                .diagonal = narrow_diagonal_.data(),
+                .inverse = inverse_.data(),
+                .f = nullptr,
+                .p = vector(),
+                .r = vector(),
+                .z = vector(),
+                .t = vector(),
+                .u = vector(),
+                .q = vector(),
+                .Dq = vector(),
+                .x = vector(),
+                .rows = &rows_.data()->v,
+                .partial = partial_.data(),
+                .second_partial = partial_.data() + stride};
     Slice* right = vector();
     Slice* f = vector();
     if (problem.direction) {
