@@ -125,7 +125,7 @@ void solve_twice(const State& s, const Loads& loads, Workspace& workspace, Evalu
 void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
                    Workspace::Buffers& b, Evaluation& e, double share)
 {
-    history.guess(s.time, b.guess, b.threads);
+    history.guess(s.time, s.size(), b.threads, b.guess);
     if (b.guess.empty())
         b.solution.assign(b.slices.count + 1, Slice6{});
     else

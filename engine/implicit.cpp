@@ -59,7 +59,7 @@ double foresee(const State& state, const Model& model, const Control& control, d
                Workspace& workspace)
 {
     Workspace::Buffers& b = workspace.buffers();
-    const double rate = b.history.guess(state.time + dt, b.foreseen, b.threads);
+    const double rate = b.history.guess(state.time + dt, state.size(), b.threads, b.foreseen);
     if (!b.foreseen.empty()) return rate;
     Evaluation now = evaluate(state, model, control, workspace);
     b.foreseen = now.nonaffine;

@@ -177,4 +177,15 @@ SIGMAFLOW_INLINE Triple<d8> gather_triple(const double* rows, const int* index)
     return t;
 }
 
+/// One member of eight elements that may lie anywhere, lane by lane, in groups of d8 members.
+template <class Group>
+SIGMAFLOW_INLINE d8 pick(const Group* groups, const int* pair, int member)
+{
+    d8 v;
+    for (int l = 0; l < lanes; ++l)
+        v[l] = reinterpret_cast<const double*>(groups +
+                                               pair[l] / lanes)[member * lanes + pair[l] % lanes];
+    return v;
+}
+
 }

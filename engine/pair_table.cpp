@@ -29,17 +29,6 @@ SIGMAFLOW_INLINE d8 nearest_integers(const d8& x)
     return (x + magic) - magic;
 }
 
-/// One value of eight pairs that may lie anywhere.
-template <class Group>
-SIGMAFLOW_INLINE d8 pick(const Group* groups, const int* pair, int member)
-{
-    d8 v;
-    for (int l = 0; l < lanes; ++l)
-        v[l] = reinterpret_cast<const double*>(groups +
-                                               pair[l] / lanes)[member * lanes + pair[l] % lanes];
-    return v;
-}
-
 template <class Group>
 SIGMAFLOW_INLINE Triple<d8> pick_triple(const Group* groups, const int* pair, int member)
 {

@@ -17,21 +17,14 @@ SIGMAFLOW_INLINE OwnGroup seen_by_first(const PairGroup& g)
 
 SIGMAFLOW_INLINE OwnGroup seen_by_second(const PairGroup* groups, const int* pair)
 {
-    OwnGroup o;
-    for (int l = 0; l < lanes; ++l) {
-        const double* p =
-            reinterpret_cast<const double*>(groups + pair[l] / lanes) + pair[l] % lanes;
-        o.n.x[l] = -p[0 * lanes];
-        o.n.y[l] = -p[1 * lanes];
-        o.n.z[l] = -p[2 * lanes];
-        o.xa[l] = p[3 * lanes];
-        o.ya[l] = p[4 * lanes];
-        o.yb_other[l] = p[5 * lanes];
-        o.yb_own[l] = p[6 * lanes];
-        o.yc_cross[l] = p[8 * lanes];
-        o.yc_own[l] = p[9 * lanes];
-    }
-    return o;
+    const auto member = [&](int k) { return pick(groups, pair, k); };
+    return {{-member(0), -member(1), -member(2)},
+            member(3),
+            member(4),
+            member(6),
+            member(5),
+            member(9),
+            member(8)};
 }
 
 struct Motion {

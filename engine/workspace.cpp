@@ -13,10 +13,10 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-double SolutionHistory::guess(double at, Velocities& v, int threads) const
+double SolutionHistory::guess(double at, int particles, int threads, Velocities& v) const
 {
     v.clear();
-    if (known == 0) return 0;
+    if (known == 0 || solution[0].size() != static_cast<std::size_t>(particles)) return 0;
     v = solution[0];
     const double interval = time[0] - time[1], ahead = at - time[0];
     // beyond a few intervals a straight line is worse than the last value

@@ -16,8 +16,8 @@ struct SolutionHistory {
     std::array<double, 2> time{}, rate{};  // newest first
     std::array<Velocities, 2> solution;
 
-    /// Leaves v empty if nothing is known; returns the shear rate.
-    double guess(double at, Velocities& v, int threads) const;
+    /// Leaves v empty if nothing is known of as many particles; returns the shear rate.
+    double guess(double at, int particles, int threads, Velocities& v) const;
     void remember(double at, const Velocities& v, double shear_rate);
 };
 

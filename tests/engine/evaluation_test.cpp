@@ -323,6 +323,15 @@ TEST(Evaluation, LoadingAStoredStateChangesNothing)
     }
 }
 
+TEST(Evaluation, AWorkspaceServesStatesOfDifferentSizes)
+{
+    const State small = frictional_state(40), large = frictional_state(80);
+    Workspace shared({SolverKind::pcg, 1e-10}), own({SolverKind::pcg, 1e-10});
+    evaluate(small, {}, ImposedStress{5}, shared);
+    const double expected = evaluate(large, {}, ImposedStress{5}, own).shear_rate;
+    EXPECT_NEAR(evaluate(large, {}, ImposedStress{5}, shared).shear_rate / expected, 1, 1e-9);
+}
+
 TEST(Evaluation, CoincidingParticlesAreAnErrorThatNamesThem)
 {
     State s = single_sphere(1, 12);
