@@ -277,20 +277,13 @@ SIGMAFLOW_HOT void ConjugateGradients<V>::load(const ResistanceMatrix& m, Range 
                          narrowed<V>(p.yb11),      narrowed<V>(p.yc12)};
         }
         for (int g = s.lower[k]; g < s.lower[k + 1]; ++g) {
-            OwnGroup& own = lower_[g];
-            for (int l = 0; l < lanes; ++l) {
-                const int pair = s.lower_pair[g * lanes + l];
-                const double* p =
-                    reinterpret_cast<const double*>(m.pairs.data() + pair / lanes) + pair % lanes;
-                own.nx[l] = static_cast<Scalar<V>>(-p[0 * lanes]);
-                own.ny[l] = static_cast<Scalar<V>>(-p[1 * lanes]);
-                own.nz[l] = static_cast<Scalar<V>>(-p[2 * lanes]);
-                own.ya_minus_xa[l] = static_cast<Scalar<V>>(p[4 * lanes] - p[3 * lanes]);
-                own.ya[l] = static_cast<Scalar<V>>(p[4 * lanes]);
-                own.force[l] = static_cast<Scalar<V>>(p[5 * lanes]);
-                own.turn[l] = static_cast<Scalar<V>>(p[6 * lanes]);
-                own.yc[l] = static_cast<Scalar<V>>(p[8 * lanes]);
-            }
+            const auto member = [&](int index) {
+                return pick(m.pairs.data(), s.lower_pair.data() + g * lanes, index);
+            };
+            lower_[g] = {narrowed<V>(-member(0)), narrowed<V>(-member(1)),
+                         narrowed<V>(-member(2)), narrowed<V>(member(4) - member(3)),
+                         narrowed<V>(member(4)),  narrowed<V>(member(5)),
+                         narrowed<V>(member(6)),  narrowed<V>(member(8))};
         }
     }
     diagonal_blocks(m, range, diagonal_.data());
