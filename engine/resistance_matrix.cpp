@@ -119,6 +119,7 @@ void multiply(const ResistanceMatrix& m, const SlicedVector& v, SlicedVector& re
     subtract_product(m, v, rows.data(), zero, {0, count}, result);
     for (Slice6& slice : result)
         for (d8& c : slice.c) c = -c;
+    result.back() = zero.back();  // may hold values from a time with more slices
 }
 
 SIGMAFLOW_HOT void diagonal_blocks(const ResistanceMatrix& m, Range range,

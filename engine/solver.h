@@ -11,6 +11,7 @@
 // tolerance falls back to Cholesky; the report says so.
 // Errors: numerics (R not positive definite).
 #pragma once
+#include "engine/archive.h"
 #include "engine/pairs.h"
 #include "engine/resistance_matrix.h"
 #include "engine/types.h"
@@ -60,6 +61,11 @@ public:
     /// Exact solutions for several right-hand sides at once, without a rank-one term.
     void solve_directly(const ResistanceMatrix& matrix, const std::vector<const Velocities*>& b,
                         const std::vector<Velocities*>& x);
+
+    /// What the next solve takes from earlier ones: factors of earlier matrices and their age. To
+    /// be restored after set_pattern. Errors: input (not of as many particles).
+    void save(ArchiveWriter& archive);
+    void restore(ArchiveReader& archive);
 
 private:
     struct Impl;

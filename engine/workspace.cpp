@@ -48,8 +48,6 @@ void recycle(Evaluation&& evaluation, Workspace& workspace)
     if (spare.size() < 2) spare.push_back(std::move(evaluation));
 }
 
-namespace {
-
 void make_pattern(const State& s, Workspace::Buffers& b)
 {
     const auto& candidates = b.neighbours.candidates();
@@ -71,6 +69,8 @@ void make_pattern(const State& s, Workspace::Buffers& b)
     b.right.resize(count);
     b.right.back() = Slice6{};
 }
+
+namespace {
 
 void find_touching(const State& s, Workspace::Buffers& b)
 {
