@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -53,6 +54,17 @@ OutputFile::OutputFile(std::filesystem::path path)
       descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666))
 {
     if (descriptor_ < 0) throw write_error(path_, errno);
+}
+
+OutputFile::OutputFile(std::filesystem::path path, std::uint64_t size)
+    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC))
+{
+    if (descriptor_ < 0) throw write_error(path_, errno);
+    const auto end = static_cast<off_t>(size);
+    if (::ftruncate(descriptor_, end) == 0 && ::lseek(descriptor_, end, SEEK_SET) == end) return;
+    const int reason = errno;
+    ::close(descriptor_);
+    throw write_error(path_, reason);
 }
 
 OutputFile::~OutputFile()
@@ -111,7 +123,28 @@ void write_file(const std::filesystem::path& path, std::string_view text)
     }
 }
 
-std::string read_file(const std::filesystem::path& path)
+void read_pieces(const std::filesystem::path& path, std::uint64_t size,
+                 const std::function<void(std::string_view)>& take)
+{
+    const auto unreadable = [&path](int error_number) {
+        return Error(ErrorKind::missing, path.string(),
+                     std::string("cannot be read: ") + std::strerror(error_number));
+    };
+    const Descriptor opened(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (opened.value() < 0) throw unreadable(errno);
+    std::string buffer(std::size_t{1} << 20, '\0');
+    while (size > 0) {
+        const auto wanted = std::min<std::uint64_t>(size, buffer.size());
+        const ssize_t got = ::read(opened.value(), buffer.data(), wanted);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) throw unreadable(errno);
+        if (got == 0) return;
+        take({buffer.data(), static_cast<std::size_t>(got)});
+        size -= static_cast<std::uint64_t>(got);
+    }
+}
+
+std::string read_file(const std::filesystem::path& path, std::size_t largest)
 {
     const auto unreadable = [&path](int error_number) {
         return Error(ErrorKind::missing, path.string(),
@@ -127,9 +160,9 @@ std::string read_file(const std::filesystem::path& path)
         if (got < 0) throw unreadable(errno);
         if (got == 0) return text;
         text.append(buffer.data(), static_cast<std::size_t>(got));
-        if (text.size() > largest_text_file)
+        if (text.size() > largest)
             throw Error(ErrorKind::input, path.string(),
-                        "must not be larger than " + std::to_string(largest_text_file) + " bytes");
+                        "must not be larger than " + std::to_string(largest) + " bytes");
     }
 }
 

@@ -10,7 +10,9 @@
 #include "engine/error.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -21,7 +23,7 @@ inline constexpr std::size_t largest_text_file = std::size_t{64} << 20;  // 64 M
 void write_file(const std::filesystem::path& path, std::string_view text);
 
 /// The whole file; at most largest_text_file bytes.
-std::string read_file(const std::filesystem::path& path);
+std::string read_file(const std::filesystem::path& path, std::size_t largest = largest_text_file);
 
 /// Gives a complete file its name: fsync, rename, fsync of the folder.
 void commit_file(const std::filesystem::path& temporary, const std::filesystem::path& path);
@@ -29,10 +31,18 @@ void commit_file(const std::filesystem::path& temporary, const std::filesystem::
 /// The Error of a failed write with the system's error number.
 Error write_error(const std::filesystem::path& path, int error_number);
 
-/// A file open for writing from its beginning, unbuffered: what was written can be read by others.
+/// Reads at most `size` bytes, piece by piece. Errors: missing.
+void read_pieces(const std::filesystem::path& path, std::uint64_t size,
+                 const std::function<void(std::string_view)>& take);
+
+/// A file open for writing, unbuffered: what was written can be read by others. A link in its place
+/// is refused: it would lead the output elsewhere.
 class OutputFile {
 public:
+    /// A new file; an older one is lost.
     explicit OutputFile(std::filesystem::path path);
+    /// An existing file, cut to `size` bytes; writing goes on there.
+    OutputFile(std::filesystem::path path, std::uint64_t size);
     ~OutputFile();
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;

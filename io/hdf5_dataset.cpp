@@ -45,7 +45,7 @@ GrowingDataset::GrowingDataset(const Hdf5Group& group, const std::string& name, 
     const Shape chunk = with_rows(std::max<hsize_t>(1, chunk_values / row_size_), row_shape);
     const int rank = static_cast<int>(none.size());
     const Hdf5Handle space(H5Screate_simple(rank, none.data(), unlimited.data()), H5Sclose);
-    const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const Hdf5Handle layout = without_times(H5P_DATASET_CREATE);
     H5Pset_chunk(layout.id(), rank, chunk.data());
     H5Pset_fletcher32(layout.id());
     dataset_ = created(H5Dcreate2(group.id(), name.c_str(), stored_type(native), space.id(),

@@ -70,6 +70,13 @@ hid_t stored_type(hid_t native)
     return H5T_STD_U8LE;
 }
 
+Hdf5Handle without_times(hid_t property_class)
+{
+    Hdf5Handle list(H5Pcreate(property_class), H5Pclose);
+    H5Pset_obj_track_times(list.id(), false);
+    return list;
+}
+
 Hdf5Handle text_type(std::size_t length)
 {
     Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);

@@ -3,6 +3,7 @@
 #include "io/case_file.h"
 #include "workflows/blas_kernel.h"
 #include "workflows/help.h"
+#include "workflows/interruption.h"
 #include "workflows/manifest.h"
 #include "workflows/runner.h"
 
@@ -20,7 +21,9 @@ constexpr const char* examples = R"(examples:
   sigmaflow steps shear                               the parameters of one step
   sigmaflow evaluate case.json                        velocities and stress of one configuration
 
-exit codes: 0 complete, 64 wrong command line, 65 invalid input, 66 input missing, 69 pictures could
+a run that was interrupted or killed goes on with the same command
+
+exit codes: 0 complete, 3 interrupted (the same command goes on), 64 wrong command line, 65 invalid input, 66 input missing, 69 pictures could
 not be drawn, 70 numerical failure, 71 internal error, 73 cannot write, 74 disk full, 75 folder in use)";
 
 /// Prints results; a full disk or a closed pipe must not pass for success.
@@ -38,13 +41,22 @@ void run_command(int argc, char** argv)
     app.require_subcommand(0, 1);
 
     workflows::RunOptions options;
-    std::string out, case_file, step;
+    std::string out, case_file, step, wall_time;
     CLI::App* run = app.add_subcommand("run", "run a workflow");
     run->add_option("WORKFLOW.json", options.workflow, "the workflow")->required();
     run->add_option(
         "--out", out,
-        "folder for the results, default out/<name of the workflow file>. An earlier run "
-        "of the same workflow in it is replaced, any other folder must be empty");
+        "folder for the results, default out/<name of the workflow file>. An earlier run of the "
+        "same workflow in it goes on where it ended, any other folder must be empty");
+    run->add_flag("--force", options.force,
+                  "run all steps anew, even if the folder has their results or a checkpoint");
+    run->add_option("--checkpoint-interval", options.checkpoint_interval,
+                    "seconds between two checkpoints; 0: after every step")
+        ->check(CLI::Range(0., 1e6))
+        ->default_val(30);
+    run->add_option("--max-walltime", wall_time,
+                    "store a checkpoint and end with exit code 3 in good time before, e.g. 90m, 2h "
+                    "or 1-12:00:00");
     run->add_option("--threads", options.threads,
                     "threads of each evaluation, worth it from some thousand particles on; results "
                     "do not depend on it")
@@ -64,6 +76,13 @@ void run_command(int argc, char** argv)
 
     if (run->parsed()) {
         if (run->count("--out")) options.out = out;
+        if (run->count("--max-walltime")) {
+            options.wall_time = workflows::seconds_of(wall_time);
+            if (!options.wall_time)
+                throw Error(
+                    ErrorKind::usage, "--max-walltime",
+                    "must be a time as 5400, 90m, 2h or D-HH:MM:SS, got \"" + wall_time + "\"");
+        }
         workflows::run_workflow(options, std::cout);
         print("");
     } else if (evaluate->parsed()) {
@@ -77,7 +96,8 @@ void run_command(int argc, char** argv)
 
 int complain(const std::string& message, ErrorKind kind)
 {
-    std::cerr << "sigmaflow: error: " << message << "\n";
+    const char* what = kind == ErrorKind::interrupted ? "interrupted: " : "error: ";
+    std::cerr << "sigmaflow: " << what << message << "\n";
     return static_cast<int>(kind);
 }
 

@@ -97,6 +97,12 @@ void Progress::note(const std::string& text)
     if (style_ != Style::quiet) print(text + "\n");
 }
 
+void Progress::warn(const std::string& text)
+{
+    clear();
+    print("sigmaflow: warning: " + text + "\n");
+}
+
 void Progress::clear()
 {
     if (bar_drawn_) print("\r\033[K");

@@ -24,6 +24,8 @@ public:
     void end(const std::string& result);
     /// A line that stays.
     void note(const std::string& text);
+    /// A line that stays, even when quiet.
+    void warn(const std::string& text);
     /// Forgets a half-drawn bar, before an error message.
     void clear();
 

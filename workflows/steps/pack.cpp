@@ -1,6 +1,7 @@
 // Step "pack": a random packing without overlaps at exactly the asked volume fraction.
 #include "engine/packing.h"
 #include "io/case_file.h"
+#include "workflows/checkpoint.h"
 #include "workflows/steps.h"
 
 #include <cmath>
@@ -20,7 +21,7 @@ struct Pack {
         f("seed", seed, "instead of that of the suspension");
     }
 
-    void validate(const io::JsonNode&, Plan& plan) { plan.has_state = true; }
+    void validate(const io::JsonNode&, Plan& plan) { plan.has_state = plan.changes_state = true; }
 
     void run(Context& context) const
     {
@@ -29,6 +30,7 @@ struct Pack {
         packing.seed = seed.value_or(packing.seed);
         // the smallest xi goes from about -1 to -0.01, ever more slowly
         const auto report = [&](int iteration, double smallest_xi) {
+            context.keeper.stop_if_asked();
             const double fraction =
                 1 - std::log(std::max(-smallest_xi, 0.01) / 0.01) / std::log(100);
             context.progress.update(fraction, "iteration " + std::to_string(iteration) +
