@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <string>
 
 namespace sigmaflow {
@@ -261,6 +262,7 @@ bool NeighbourList::covers(const State& state, double range, int threads)
         }
     };
     Largest largest;
+    std::mutex one_at_a_time;
     with_team(threads, [&](const Team& team) {
         const Range own = team.share(0, state.size());
         Largest mine;
@@ -269,11 +271,9 @@ bool NeighbourList::covers(const State& state, double range, int threads)
             moved.x() += strain * moved.y();
             mine.add(images.separation(moved, state.position[i]).d.squaredNorm());
         }
-#pragma omp critical
-        {
-            largest.add(mine.first);
-            largest.add(mine.second);
-        }
+        const std::lock_guard lock(one_at_a_time);
+        largest.add(mine.first);
+        largest.add(mine.second);
     });
     const double now = reach_ + std::sqrt(largest.first) + std::sqrt(largest.second);
     use_.used = (1 + std::abs(strain)) * now - reach_;

@@ -4,6 +4,7 @@
 #include "engine/team.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace sigmaflow {
@@ -117,17 +118,14 @@ void locate(const State& s, const Model& m, Workspace::Buffers& b)
         return;
     b.located = false;
     if (b.neighbours.update(s, range, b.threads)) make_pattern(s, b);
-    bool good = true;
+    std::atomic<bool> good = true;
     with_team(b.threads, [&](const Team& team) {
         team.own(b.slices, [&](Range own) { write_positions(s, b.slices, own, b.row_values()); });
         if (team.rank == 0)  // the particle of unused lanes, where no other is
             std::fill_n(b.row_values() + 4 * b.slices.slots(), 3, -s.box.length.x() / 3);
         team.barrier();
         team.own(b.slices, [&](Range own) {
-            if (!find_geometry(b.slices, s.box, b.row_values(), own, b.table)) {
-#pragma omp atomic write
-                good = false;
-            }
+            if (!find_geometry(b.slices, s.box, b.row_values(), own, b.table)) good = false;
         });
     });
     if (!good) find_pairs(s, range, b.neighbours);  // throws and says which centres coincide
