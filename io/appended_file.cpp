@@ -20,7 +20,10 @@ Checksum verify(const std::filesystem::path& path, const Mark& mark)
     return sum;
 }
 
-AppendedFile::AppendedFile(const std::filesystem::path& path) : file_(path) {}
+AppendedFile::AppendedFile(const std::filesystem::path& path) : file_(path)
+{
+    sync_entry(path);  // marks promise that the file is there
+}
 
 AppendedFile::AppendedFile(const std::filesystem::path& path, const Mark& mark)
     : sum_(verify(path, mark)), file_(path, mark.size), size_(mark.size)

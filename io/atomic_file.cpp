@@ -100,6 +100,11 @@ void commit_file(const std::filesystem::path& temporary, const std::filesystem::
 {
     sync_path(temporary, O_RDONLY);
     if (::rename(temporary.c_str(), path.c_str()) != 0) throw write_error(path, errno);
+    sync_entry(path);
+}
+
+void sync_entry(const std::filesystem::path& path)
+{
     sync_path(path.has_parent_path() ? path.parent_path() : ".", O_RDONLY | O_DIRECTORY);
 }
 

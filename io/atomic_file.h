@@ -28,6 +28,9 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest = l
 /// Gives a complete file its name: fsync, rename, fsync of the folder.
 void commit_file(const std::filesystem::path& temporary, const std::filesystem::path& path);
 
+/// Brings the entry of a new file or folder in its folder to the disk.
+void sync_entry(const std::filesystem::path& path);
+
 /// The Error of a failed write with the system's error number.
 Error write_error(const std::filesystem::path& path, int error_number);
 

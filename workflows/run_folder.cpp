@@ -31,11 +31,13 @@ constexpr const char* owner_name = "owner";
 void make_folder(const fs::path& path)
 {
     std::error_code error;
+    if (fs::is_directory(path, error)) return;
     fs::create_directories(path, error);
     if (error == std::errc::no_space_on_device)
         throw Error(ErrorKind::no_space, path.string(), "cannot make the folder: the disk is full");
     if (error || !fs::is_directory(path, error))
         refuse(path, "cannot make the folder" + (error ? ": " + error.message() : ""));
+    io::sync_entry(path);
 }
 
 std::string this_process()
