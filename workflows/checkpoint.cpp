@@ -21,15 +21,25 @@ std::filesystem::path path_of(const RunFolder& folder, std::uint64_t generation)
     return folder.own_file("checkpoint." + std::to_string(generation % 2));
 }
 
+Checkpoint read_checkpoint(const std::filesystem::path& path)
+{
+    return parse_checkpoint(io::read_file(path, std::numeric_limits<std::size_t>::max()),
+                            path.string());
+}
+
 /// The checkpoint in a file whose appended files are what they were.
 Checkpoint usable(const RunFolder& folder, const std::filesystem::path& path)
 {
-    Checkpoint result = parse_checkpoint(
-        io::read_file(path, std::numeric_limits<std::size_t>::max()), path.string());
+    Checkpoint result = read_checkpoint(path);
     for (const FileMark& file : result.files) io::verify(folder.path() / file.name, file.mark);
     return result;
 }
 
+}
+
+std::string rounded_text(double strain)
+{
+    return io::number_text(std::round(strain * 1e4) / 1e4);
 }
 
 const io::Mark& Checkpoint::mark(const std::string& name) const
@@ -79,6 +89,18 @@ std::optional<Checkpoint> newest_checkpoint(const RunFolder& folder,
     return newest;
 }
 
+std::vector<std::string> stored_steps(const RunFolder& folder)
+{
+    std::vector<std::string> names;
+    for (const std::uint64_t slot : {0, 1}) {
+        try {
+            names.push_back(read_checkpoint(path_of(folder, slot)).step.name);
+        } catch (const Error&) {  // none, or damaged
+        }
+    }
+    return names;
+}
+
 void remove_checkpoints(const RunFolder& folder)
 {
     std::error_code ignored;
@@ -118,7 +140,7 @@ void Keeper::keep(double strain, std::vector<FileMark> files, std::string run)
     cost_ = std::chrono::duration<double>(stored_ - begin).count();
     if (const auto reason = interruption_.asked(cost_))
         throw Error(ErrorKind::interrupted, step_.name,
-                    *reason + "; stored at strain " + io::number_text(strain) +
+                    *reason + "; stored at strain " + rounded_text(strain) +
                         ", the same command goes on from there");
 }
 

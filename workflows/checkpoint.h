@@ -47,12 +47,17 @@ void archive(Archive& a, Checkpoint& c)
     a(c.generation, c.written, c.arithmetic, c.step, c.strain, c.files, c.run);
 }
 
+/// A strain for people, with four decimals at most.
+std::string rounded_text(double strain);
+
 /// The bytes of a checkpoint file; `file` stands for the file in error messages. Errors: input.
 Checkpoint parse_checkpoint(std::string_view content, const std::string& file);
 
 /// The newest one that can be used; what is wrong with a newer one goes to `warnings`.
 std::optional<Checkpoint> newest_checkpoint(const RunFolder& folder,
                                             std::vector<std::string>& warnings);
+/// Names of the steps that the checkpoints belong to, as far as they can be read.
+std::vector<std::string> stored_steps(const RunFolder& folder);
 void remove_checkpoints(const RunFolder& folder);
 
 /// Decides when the running step is stored and whether it goes on.

@@ -153,7 +153,10 @@ void remove_unused(const Resumption& plan, const RunFolder& folder)
         fs::remove(path, ignored);
         if (!plan.checkpoint || plan.checkpoint->step.name != name) folder.remove_leftovers(name);
     }
-    if (!plan.checkpoint) remove_checkpoints(folder);
+    if (plan.checkpoint) return;
+    for (const std::string& name : stored_steps(folder))
+        if (!is_used(name)) folder.remove_leftovers(name);
+    remove_checkpoints(folder);
 }
 
 }

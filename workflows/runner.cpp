@@ -85,7 +85,7 @@ void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json
                 plan.checkpoint && plan.checkpoint->step.name == planned.identity.name;
             if (goes_on)
                 context.progress.note(title + ": goes on from strain " +
-                                      io::number_text(plan.checkpoint->strain) + ", stored " +
+                                      rounded_text(plan.checkpoint->strain) + ", stored " +
                                       plan.checkpoint->written);
             else if (!planned.reason.empty())
                 context.progress.note(title + ": again, " + planned.reason);
