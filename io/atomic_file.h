@@ -5,7 +5,10 @@
 // after a crash or a full disk the old file is still there, whole. What is not a regular file
 // (/dev/stdout) is written directly. Errors carry the path and the reason given by the system:
 // no_space (disk or quota full, file size limit), file (anything else that cannot be written),
-// missing (cannot be read), input (too large).
+// missing (cannot be read, or not a regular file), input (too large).
+//
+// Reading waits for nobody and believes nobody: folders, devices and pipes are refused before they
+// are opened, and the size is checked before anything is read.
 #pragma once
 #include "engine/error.h"
 
@@ -22,8 +25,11 @@ inline constexpr std::size_t largest_text_file = std::size_t{64} << 20;  // 64 M
 
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-/// The whole file; at most largest_text_file bytes.
+/// The whole file; Error(input) if it has more than `largest` bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t largest = largest_text_file);
+
+/// The first bytes of a file of any size, fewer if it is shorter.
+std::string first_bytes(const std::filesystem::path& path, std::size_t count);
 
 /// Gives a complete file its name: fsync, rename, fsync of the folder.
 void commit_file(const std::filesystem::path& temporary, const std::filesystem::path& path);

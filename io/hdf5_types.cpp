@@ -4,8 +4,7 @@
 
 #include <cstdio>
 #include <cstring>
-#include <functional>
-#include <numeric>
+#include <limits>
 #include <string_view>
 
 namespace sigmaflow::io {
@@ -38,7 +37,11 @@ Failure last_failure()
 
 hsize_t product(const Shape& shape)
 {
-    return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
+    hsize_t result = 1;
+    for (const hsize_t length : shape)
+        if (__builtin_mul_overflow(result, length, &result))
+            return std::numeric_limits<hsize_t>::max();
+    return result;
 }
 
 Shape with_rows(hsize_t rows, const Shape& row_shape)

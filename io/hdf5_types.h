@@ -17,6 +17,7 @@ namespace sigmaflow::io {
 
 using Shape = std::vector<hsize_t>;
 
+/// The largest number there is instead of an overflow.
 hsize_t product(const Shape& shape);
 /// The shape of a list of rows.
 Shape with_rows(hsize_t rows, const Shape& row_shape);

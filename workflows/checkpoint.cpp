@@ -21,12 +21,6 @@ std::filesystem::path path_of(const RunFolder& folder, std::uint64_t generation)
     return folder.own_file("checkpoint." + std::to_string(generation % 2));
 }
 
-Checkpoint read_checkpoint(const std::filesystem::path& path)
-{
-    return parse_checkpoint(io::read_file(path, std::numeric_limits<std::size_t>::max()),
-                            path.string());
-}
-
 /// The checkpoint in a file whose appended files are what they were.
 Checkpoint usable(const RunFolder& folder, const std::filesystem::path& path)
 {
@@ -62,6 +56,12 @@ Checkpoint parse_checkpoint(std::string_view content, const std::string& file)
         throw error.within(file);
     }
     return result;
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& path)
+{
+    return parse_checkpoint(io::read_file(path, std::numeric_limits<std::size_t>::max()),
+                            path.string());
 }
 
 std::optional<Checkpoint> newest_checkpoint(const RunFolder& folder,

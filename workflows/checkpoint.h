@@ -53,6 +53,9 @@ std::string rounded_text(double strain);
 /// The bytes of a checkpoint file; `file` stands for the file in error messages. Errors: input.
 Checkpoint parse_checkpoint(std::string_view content, const std::string& file);
 
+/// Errors: missing, input.
+Checkpoint read_checkpoint(const std::filesystem::path& path);
+
 /// The newest one that can be used; what is wrong with a newer one goes to `warnings`.
 std::optional<Checkpoint> newest_checkpoint(const RunFolder& folder,
                                             std::vector<std::string>& warnings);

@@ -11,8 +11,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* record_ending = ".step";
-
 struct EarlierRecords {
     std::map<std::string, StepRecord> good;  // by name of the step
     std::map<std::string, std::string> damaged;

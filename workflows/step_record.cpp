@@ -43,7 +43,7 @@ std::vector<StepIdentity> identities(const Workflow& workflow)
 
 std::filesystem::path record_path(const RunFolder& folder, const std::string& step)
 {
-    return folder.own_file(step + ".step");
+    return folder.own_file(step + record_ending);
 }
 
 void write_record(const RunFolder& folder, const StepRecord& record)

@@ -57,6 +57,7 @@ void archive(Archive& a, StepRecord& r)
     a(r.identity, r.results, r.wall_seconds, r.files, r.state, r.run, r.last_run);
 }
 
+inline constexpr const char* record_ending = ".step";
 std::filesystem::path record_path(const RunFolder& folder, const std::string& step);
 void write_record(const RunFolder& folder, const StepRecord& record);
 StepRecord read_record(const std::filesystem::path& path);

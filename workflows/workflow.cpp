@@ -141,7 +141,12 @@ std::vector<io::Field> step_fields(Step& step)
 
 Workflow read_workflow(const std::filesystem::path& path)
 {
-    return checked_workflow(io::JsonDocument::read(path), path.stem().string());
+    return read_workflow(io::JsonDocument::read(path), path);
+}
+
+Workflow read_workflow(const io::JsonDocument& document, const std::filesystem::path& path)
+{
+    return checked_workflow(document, path.stem().string());
 }
 
 Workflow parse_workflow(const std::string& text, const std::string& file)

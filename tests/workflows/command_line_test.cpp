@@ -60,10 +60,10 @@ TEST_F(CommandLine, WrongUsageIs64)
 
 TEST_F(CommandLine, MissingInputIs66)
 {
-    expect_error("run nothing.json", 66, "nothing.json: no such file");
+    expect_error("run nothing.json", 66, "nothing.json: cannot be read: No such file");
     expect_error("run .", 66, "is a folder, not a file");
     expect_error("run /dev/zero", 66, "is not a regular file");
-    expect_error("evaluate nothing.json", 66, "nothing.json: no such file");
+    expect_error("evaluate nothing.json", 66, "nothing.json: cannot be read: No such file");
 }
 
 TEST_F(CommandLine, InvalidInputIs65AndNothingIsWritten)
