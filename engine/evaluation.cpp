@@ -1,6 +1,7 @@
 #include "engine/evaluation.h"
 
 #include "engine/ambient.h"
+#include "engine/checks.h"
 #include "engine/error.h"
 #include "engine/lean_resize.h"
 #include "engine/workspace.h"
@@ -62,6 +63,30 @@ void combine(const SlicedVector& fixed, double rate, const SlicedVector& unit, S
         for (int c = 0; c < 6; ++c) sum[k].c[c] = fixed[k].c[c] + rate * unit[k].c[c];
 }
 
+// The solver refuses what is not finite, too, but does not know where it comes from.
+void check_loads(const SlicedVector& load, const Evaluation& e)
+{
+    if (!all_finite(&load.front().c[0][0], load.size() * sizeof(Slice6) / sizeof(double)))
+        check_forces(e.contacts);
+}
+
+// Imposed stress: the resistance to shear, and the shear moment of the forces.
+void check_drive(double resistance, double moment)
+{
+    if (!(resistance > 0) || !std::isfinite(resistance))
+        throw Error(ErrorKind::numerics, "", "the shear stress per unit shear rate is not > 0");
+    check_scalar(moment, "the shear stress of the forces");
+}
+
+void check_velocities(const Velocities& v)
+{
+    if (v.empty() || all_finite(v.front().data(), 6 * v.size())) return;
+    int i = 0;
+    while (v[i].allFinite()) ++i;
+    throw Error(ErrorKind::numerics, "",
+                "the velocity of particle " + std::to_string(i) + " is not finite");
+}
+
 // Volume times the shear stress x F of the dashpots at velocities V + rate U_inf.
 double dashpot_moment(const State& s, const Evaluation& e, const Velocities& v, double rate)
 {
@@ -91,6 +116,7 @@ void solve_twice(const State& s, const Loads& loads, Workspace& workspace, Evalu
     Workspace::Buffers& b = workspace.buffers();
     // here the error of the rate is linear in that of the solutions
     constexpr double share = 0.1;
+    check_loads(b.fixed_load, e);
     e.solve = b.solver.solve({b.matrix}, b.unit_load, b.solution, share);
     const SolveReport second = b.solver.solve({b.matrix}, b.fixed_load, b.other_solution, share);
     e.solve.iterations += second.iterations;
@@ -114,6 +140,7 @@ void solve_twice(const State& s, const Loads& loads, Workspace& workspace, Evalu
         loads.affine - dot(strain_load, unit_velocity) + dashpot_moment(s, e, unit_velocity, 1);
     const double fixed = loads.first_moment - dot(strain_load, fixed_velocity) +
                          dashpot_moment(s, e, fixed_velocity, 0);
+    check_drive(unit, fixed);
     e.shear_rate = (std::get<ImposedStress>(e.control).value * s.box.volume() - fixed) / unit;
     e.nonaffine = std::move(fixed_velocity);
     for (std::size_t i = 0; i < e.nonaffine.size(); ++i)
@@ -125,6 +152,7 @@ void solve_twice(const State& s, const Loads& loads, Workspace& workspace, Evalu
 void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
                    Workspace::Buffers& b, Evaluation& e, double share)
 {
+    check_loads(b.fixed_load, e);
     history.guess(s.time, s.size(), b.threads, b.guess);
     if (b.guess.empty())
         b.solution.assign(b.slices.count + 1, Slice6{});
@@ -137,6 +165,7 @@ void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
     } else {
         const double free =
             std::get<ImposedStress>(e.control).value * s.box.volume() - loads.first_moment;
+        check_drive(loads.affine, free);
         combine(b.fixed_load, free / loads.affine, b.unit_load, b.right);
         e.solve =
             b.solver.solve({b.matrix, &b.unit_load, 1 / loads.affine}, b.right, b.solution, share);
@@ -144,14 +173,14 @@ void solve_at_once(const State& s, const Loads& loads, SolutionHistory& history,
     }
     from_slices(b.solution, b.slices, e.nonaffine, b.threads);
     if (!e.model.background_drag) remove_drift(s, e.nonaffine);
+    check_scalar(e.shear_rate, "the shear rate");  // the residual has answered for the velocities
     history.remember(s.time, e.nonaffine, e.shear_rate);
 }
 
 void complete(const State& state, int threads, Evaluation& e)
 {
-    bool finite = std::isfinite(e.shear_rate);
-    for (const Vec6& v : e.nonaffine) finite = finite && v.allFinite();
-    if (!finite) throw Error(ErrorKind::numerics, "", "the shear rate or a velocity is not finite");
+    check_scalar(e.shear_rate, "the shear rate");
+    check_velocities(e.nonaffine);
     lean_resize(e.motion, e.contacts.size());
     for_each(threads, e.contacts.size(),
              [&](int c) { e.motion[c] = relative_motion(state, e, e.contacts[c].pair); });

@@ -1,5 +1,6 @@
 // The implicit step of step.h.
 #include "engine/ambient.h"
+#include "engine/checks.h"
 #include "engine/lean_resize.h"
 #include "engine/motion.h"
 #include "engine/step.h"
@@ -102,10 +103,12 @@ Evaluation implicit_step(State& state, const Model& model, const Control& contro
     const std::array found{stage_of(before, state, w.past * time),
                            stage_of(end, predicted, w.end * time)};
     shift(state, found, b.threads, next);
+    here.time = -1;  // until it is complete
     find_mean(before, state, end, predicted, w, next, b.threads, here.mean);
     wrap(next.box, next.position);
     move_contacts(found, model, control, next, b, &here.mean);
     if (passes) next.strain = strain_limit;
+    check_clock(next);
     here.time = next.time;
     here.dt = time;
     std::swap(state, next);

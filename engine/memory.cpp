@@ -76,7 +76,7 @@ void save_memory(const State& state, Workspace& workspace, ArchiveWriter& a)
 
 void restore_memory(const State& state, const Model& model, Workspace& workspace, ArchiveReader& a)
 {
-    check_state(state);
+    check_stored_state(state);
     Workspace::Buffers& b = workspace.buffers();
     bool known = false;
     a(known);

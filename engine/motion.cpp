@@ -1,5 +1,6 @@
 #include "engine/motion.h"
 
+#include "engine/checks.h"
 #include "engine/lean_resize.h"
 
 #include <algorithm>
@@ -67,6 +68,7 @@ void move_contacts(std::span<const Stage> stages, const Model& model, const Cont
     }
     double time = 0;
     for (const Stage& stage : stages) time += stage.dt;
+    bool finite = true;
     with_team(b.threads, [&](const Team& team) {
         const Range own = team.share(0, static_cast<int>(count));
         if (own.begin == own.end) return;
@@ -95,6 +97,10 @@ void move_contacts(std::span<const Stage> stages, const Model& model, const Cont
             const ContactLoad load = contact_load(pair, moved.radius[pair.i], moved.radius[pair.j],
                                                   memory, model, stiff);
             moved.contacts[k] = load.memory;
+            if (!is_finite(load.memory)) {
+#pragma omp atomic write
+                finite = false;
+            }
             const double stretch = memory.spring.norm();
             b.friction_share[k] =
                 load.memory.sliding && stretch > 0 ? load.memory.spring.norm() / stretch : 1;
@@ -103,6 +109,7 @@ void move_contacts(std::span<const Stage> stages, const Model& model, const Cont
             mean->motion[k] = {total.slip / time, total.roll / time};
         }
     });
+    if (!finite) refuse_springs(moved.contacts);
 }
 
 }

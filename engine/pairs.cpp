@@ -235,7 +235,7 @@ void NeighbourList::find_again(const State& state, int threads)
                skin_ >= 0 && skin_ <= largest_skin && use_.used >= 0 && use_.updates >= 0 &&
                use_.updates < std::numeric_limits<int>::max();
     };
-    check_state(reference_);
+    check_stored_state(reference_);
     if (!good()) throw Error(ErrorKind::input, "", "has neighbours of another state");
     reach_ = largest_radius(state) * (2 + range_);
     close_pairs(reference_, range_, skin_, threads, search_, candidates_);

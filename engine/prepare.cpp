@@ -1,5 +1,6 @@
 // prepare: forces and resistance matrix of a state; what the force balance needs of them.
 #include "engine/ambient.h"
+#include "engine/checks.h"
 #include "engine/forces/repulsion.h"
 #include "engine/lean_resize.h"
 #include "engine/workspace.h"
@@ -97,7 +98,9 @@ void add_springs(const State& s, const Stiffness& k, const ContactLoad& c, int c
 Evaluation prepare(const State& s, const Model& model, const Control& control,
                    const ImplicitStage* stage, Workspace::Buffers& b)
 {
+    check_model(model, control);
     locate(s, model, b);
+    if (!stage) check_overlaps(b.touching_pairs);  // those of a prediction need not come true
     Evaluation e;
     if (!b.spare.empty()) {
         e = std::move(b.spare.back());

@@ -1,10 +1,14 @@
 #include "engine/solver.h"
 
+#include "engine/checks.h"
 #include "engine/cholesky.h"
 #include "engine/error.h"
 #include "engine/pcg.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
 namespace sigmaflow {
 
@@ -13,12 +17,42 @@ namespace {
 constexpr int precise_solves = 50;
 constexpr int aged = 8;               // iterations from which a new factor is cheaper
 constexpr int most_iterations = 200;  // with an old factor
+constexpr double largest = 1e100;     // of what has finite squares
 
 // v += s w
 void add(SlicedVector& v, double s, const SlicedVector& w)
 {
     for (std::size_t k = 0; k < v.size(); ++k)
         for (int c = 0; c < 6; ++c) v[k].c[c] += s * w[k].c[c];
+}
+
+// Numbers of which the squares are finite, too.
+bool is_usable(const SlicedVector& v)
+{
+    return v.empty() ||
+           all_within(&v.front().c[0][0], v.size() * sizeof(Slice6) / sizeof(double), largest);
+}
+
+void check_right_hand_side(const SlicedVector& b, const Slices& slices)
+{
+    if (is_usable(b)) return;
+    Velocities load;
+    from_slices(b, slices, load);
+    int i = 0;
+    while (i + 1 < slices.particles && all_within(load[i].data(), 6, largest)) ++i;
+    throw Error(ErrorKind::numerics, "",
+                "the right-hand side of particle " + std::to_string(i) + " is not finite");
+}
+
+void check_direct_residual(double residual)
+{
+    if (residual <= largest_direct_residual) return;
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "the direct solution of the resistance problem has a relative residual of %.3g, "
+                  "the limit is %.3g",
+                  std::abs(residual), largest_direct_residual);
+    throw Error(ErrorKind::numerics, "", text);
 }
 
 }
@@ -72,8 +106,8 @@ struct ResistanceSolver::Impl {
 
     void solve_with_factor(const ResistanceProblem& problem, const SlicedVector& b,
                            SlicedVector& x);
-    void find_residual(const ResistanceProblem& problem, const SlicedVector& b,
-                       const SlicedVector& x);
+    double find_residual(const ResistanceProblem& problem, const SlicedVector& b,
+                         const SlicedVector& x);
     bool iterate_with_factor(const ResistanceProblem& problem, const SlicedVector& b,
                              double tolerance, SlicedVector& x, SolveReport& report);
 
@@ -102,18 +136,25 @@ void ResistanceSolver::Impl::solve_with_factor(const ResistanceProblem& problem,
     cholesky.solve({&right, &other_right}, {&solution, &other_solution});
     to_slices(solution, slices, x);
     to_slices(other_solution, slices, direction);
-    add(x, problem.weight * dot(f, x) / (1 - problem.weight * dot(f, direction)), direction);
+    const double left = 1 - problem.weight * dot(f, direction);
+    if (!(left > 0))
+        throw Error(ErrorKind::numerics, "",
+                    "resistance matrix is not positive definite under an imposed stress");
+    add(x, problem.weight * dot(f, x) / left, direction);
 }
 
-// residual = b - (R - w f f^T) x
-void ResistanceSolver::Impl::find_residual(const ResistanceProblem& problem, const SlicedVector& b,
-                                           const SlicedVector& x)
+// residual = b - (R - w f f^T) x; returns |residual|/|b|
+double ResistanceSolver::Impl::find_residual(const ResistanceProblem& problem,
+                                             const SlicedVector& b, const SlicedVector& x)
 {
     multiply(problem.matrix, x, product);
     residual = b;
     add(residual, -1, product);
     if (problem.direction)
         add(residual, problem.weight * dot(*problem.direction, x), *problem.direction);
+    const double r2 = dot(residual, residual), b2 = dot(b, b);
+    if (b2 == 0) return r2 == 0 ? 0 : std::numeric_limits<double>::infinity();
+    return std::sqrt(r2 / b2);
 }
 
 bool ResistanceSolver::Impl::iterate_with_factor(const ResistanceProblem& problem,
@@ -181,39 +222,51 @@ SolveReport ResistanceSolver::solve(const ResistanceProblem& problem, const Slic
                                     SlicedVector& x, double share)
 {
     Impl& s = *impl_;
+    check_right_hand_side(b, *problem.matrix.slices);
+    if (x.size() != b.size() || !is_usable(x)) x.assign(b.size(), Slice6{});
     const double tolerance = share * s.settings.tolerance;
-    if (x.size() != b.size()) x.assign(b.size(), Slice6{});
+    const double limit = std::min(largest_excess * tolerance, 1.);
     SolveReport report;
     if (s.settings.kind == SolverKind::pcg) {
-        if (s.iterate(problem, b, tolerance, x, report)) return report;
+        if (s.iterate(problem, b, tolerance, x, report) && report.residual <= limit) return report;
         report.fell_back = true;
     }
     if (s.settings.kind == SolverKind::lagged_cholesky) {
         if (!s.factorised) s.factorise(problem.matrix);
         const bool good = s.iterate_with_factor(problem, b, tolerance, x, report);
         if (report.iterations > aged) s.factorised = false;
-        if (good) {
-            s.find_residual(problem, b, x);
-            const double b2 = dot(b, b);
-            report.residual = b2 > 0 ? std::sqrt(dot(s.residual, s.residual) / b2) : 0;
-            return report;
-        }
+        report.residual = s.find_residual(problem, b, x);
+        if (good && report.residual <= limit) return report;
         report.fell_back = true;
     }
     s.factorise(problem.matrix);
     s.solve_with_factor(problem, b, x);
-    s.find_residual(problem, b, x);
-    const double b2 = dot(b, b);
-    report.residual = b2 > 0 ? std::sqrt(dot(s.residual, s.residual) / b2) : 0;
+    report.residual = s.find_residual(problem, b, x);
+    check_direct_residual(report.residual);
     return report;
 }
 
-void ResistanceSolver::solve_directly(const ResistanceMatrix& matrix,
-                                      const std::vector<const Velocities*>& b,
-                                      const std::vector<Velocities*>& x)
+SolveReport ResistanceSolver::solve_directly(const ResistanceMatrix& matrix,
+                                             const std::vector<const Velocities*>& b,
+                                             const std::vector<Velocities*>& x)
 {
-    impl_->factorise(matrix);
-    impl_->cholesky.solve(b, x);
+    Impl& s = *impl_;
+    const Slices& slices = *matrix.slices;
+    for (const Velocities* one : b) {
+        to_slices(*one, slices, s.direction);
+        check_right_hand_side(s.direction, slices);
+    }
+    s.factorise(matrix);
+    s.cholesky.solve(b, x);
+    SolveReport report;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        to_slices(*b[k], slices, s.direction);
+        to_slices(*x[k], slices, s.search);
+        const double residual = s.find_residual({matrix}, s.direction, s.search);
+        check_direct_residual(residual);
+        report.residual = std::max(report.residual, residual);
+    }
+    return report;
 }
 
 void ResistanceSolver::save(ArchiveWriter& archive)

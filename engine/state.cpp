@@ -16,7 +16,7 @@ double volume_fraction(const State& state)
     return 4 * pi / 3 * cubes / state.box.volume();
 }
 
-void check_state(const State& s)
+void check_stored_state(const State& s)
 {
     const auto refuse = [](const std::string& problem) {
         throw Error(ErrorKind::input, "", problem);

@@ -41,7 +41,7 @@ void archive(Archive& a, State& s)
 
 /// For states that come from a file: at least one particle, radii and box positive, everything
 /// finite, no position farther than 1e9 boxes, contacts sorted pairs of particles. Errors: input.
-void check_state(const State& state);
+void check_stored_state(const State& state);
 
 /// Sum of the particle volumes over the box volume [-].
 double volume_fraction(const State& state);

@@ -1,5 +1,6 @@
 #include "engine/step.h"
 
+#include "engine/checks.h"
 #include "engine/error.h"
 #include "engine/motion.h"
 
@@ -47,6 +48,8 @@ void step(State& state, const Model& model, const Control& control, Scheme schem
         arrive(std::array{stage_of(first, state, dt)});
     }
     if (lands) next.strain = state.strain + h;
+    check_clock(next);
+    check_overlaps(b.touching_pairs);
     std::swap(state, next);
 }
 
@@ -79,6 +82,11 @@ constexpr double accepted_excess = 2;  // displacements; a step that moves more 
 // before its springs have found their balance, which takes about 60 eta0/sigma.
 constexpr double longest_step = 1;  // [eta0/sigma]
 
+void check_time_step(double dt)
+{
+    if (!(dt > 1e-14)) throw Error(ErrorKind::numerics, "", "the time step vanishes");
+}
+
 double longest_time_step(const Control& control)
 {
     const auto* stress = std::get_if<ImposedStress>(&control);
@@ -107,13 +115,14 @@ Evaluation advance_implicitly(State& state, const Model& model, const Control& c
         const double proposed = displacement_time_step(second, stepping.displacement);
         const bool passed = next.strain > limit.strain + 1e-12;
         if (h <= accepted_excess * proposed && !passed) {
+            check_overlaps(workspace.buffers().touching_pairs);
             next.time_step = std::min({proposed, growth * dt, longest_time_step(control)});
             std::swap(state, next);
             return second;
         }
         recycle(std::move(second), workspace);
         dt = passed ? 0.5 * h : std::max(0.2 * h, std::min(proposed, 0.5 * h));
-        if (!(dt > 1e-14)) throw Error(ErrorKind::numerics, "", "the time step vanishes");
+        check_time_step(dt);
     }
 }
 
@@ -123,12 +132,15 @@ Evaluation advance(State& state, const Model& model, const Control& control,
                    const Stepping& stepping, const StepLimit& limit, Workspace& workspace,
                    const Evaluation* known)
 {
+    check_model(model, control);
+    check_state(state);
     if (stepping.scheme == Scheme::implicit)
         return advance_implicitly(state, model, control, stepping, limit, workspace, known);
     Evaluation first = known ? *known : evaluate(state, model, control, workspace);
     double dt =
         std::min(displacement_time_step(first, stepping.displacement), stable_time_step(first));
     if (!std::isfinite(dt)) throw Error(ErrorKind::numerics, "", "nothing moves: no time step");
+    check_time_step(dt);
     dt = shortened(dt, limit.time - state.time);
     const double left = limit.strain - state.strain, rate = first.shear_rate;
     if (rate * dt >= left) {

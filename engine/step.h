@@ -31,6 +31,9 @@ struct StepLimit {
     double time = std::numeric_limits<double>::infinity();
 };
 
+// No step leaves a state that is not finite (checks.h). A step that throws leaves the state as it
+// was, and a workspace that is as good as a new one.
+
 /// One explicit step of length h in time [1/rate0] or in strain [-]; `first` is the evaluation of
 /// `state`. Strain marching divides by the rates of the stages: it needs them positive.
 void step(State& state, const Model& model, const Control& control, Scheme scheme, March march,

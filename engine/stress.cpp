@@ -1,5 +1,7 @@
 // evaluate_in_detail: a solution for every force, and every component of the stress.
 #include "engine/ambient.h"
+#include "engine/checks.h"
+#include "engine/error.h"
 #include "engine/evaluation.h"
 #include "engine/workspace.h"
 
@@ -37,6 +39,7 @@ Columns assemble_columns(const State& s, const Evaluation& e)
 void solve_columns(const State& s, const Columns& loads, Workspace::Buffers& b,
                    DetailedEvaluation& d)
 {
+    check_forces(d.evaluation.contacts);
     std::vector<const Velocities*> right;
     std::vector<Velocities*> solutions;
     for (std::size_t c = 0; c < column_names.size(); ++c) {
@@ -47,9 +50,19 @@ void solve_columns(const State& s, const Columns& loads, Workspace::Buffers& b,
         right.push_back(&loads[c]);
         solutions.push_back(&d.column[c]);
     }
-    b.solver.solve_directly(b.matrix, right, solutions);
+    d.evaluation.solve = b.solver.solve_directly(b.matrix, right, solutions);
     if (!d.evaluation.model.background_drag)
         for (Velocities* v : solutions) remove_drift(s, *v);
+}
+
+void check_stress(const Mat3& stress, std::string_view name)
+{
+    if (stress.allFinite()) return;
+    int row = 0, column = 0;
+    while (std::isfinite(stress(row, column))) column == 2 ? (++row, column = 0) : ++column;
+    throw Error(
+        ErrorKind::numerics, "",
+        "the stress " + std::string(name) + "_" + "xyz"[row] + "xyz"[column] + " is not finite");
 }
 
 Mat3 sum_of(const PairStresslet& stresslet)
@@ -145,8 +158,11 @@ void find_rate_and_stress(const State& s, DetailedEvaluation& d)
         rate = imposed->value;
     else
         rate = (std::get<ImposedStress>(d.evaluation.control).value - fixed_shear) / unit_shear;
-    for (std::size_t p = 0; p < unit.size(); ++p)
+    check_scalar(rate, "the shear rate");
+    for (std::size_t p = 0; p < unit.size(); ++p) {
         d.stress[p] = (rate * unit[p] + fixed[p]) / volume;
+        check_stress(d.stress[p], stress_part_names[p]);
+    }
 }
 
 void superpose(const State& s, DetailedEvaluation& d)
@@ -171,6 +187,7 @@ DetailedEvaluation evaluate_in_detail(const State& state, const Model& model,
                                       const Control& control, Workspace& workspace)
 {
     Workspace::Buffers& b = workspace.buffers();
+    check_state(state);
     DetailedEvaluation d;
     d.evaluation = prepare(state, model, control, nullptr, b);
     list_pairs(state, d.evaluation, workspace);
@@ -228,6 +245,10 @@ StressSummary summarise(const State& s, const Evaluation& e, const Velocities& h
     sum.hydrodynamic /= volume;
     sum.contact /= volume;
     sum.repulsion /= volume;
+    check_stress(sum.total, "total");
+    check_scalar(sum.hydrodynamic, "the hydrodynamic stress");
+    check_scalar(sum.contact, "the stress of the contacts");
+    check_scalar(sum.repulsion, "the stress of the repulsion");
     return sum;
 }
 
@@ -249,6 +270,7 @@ SampledEvaluation evaluate_sample(const State& state, const Model& model, const 
         const StressSummary stress = summary_of(d);
         return {std::move(d.evaluation), stress};
     }
+    check_state(state);
     Workspace::Buffers& b = workspace.buffers();
     const double share = std::min(1., sample_tolerance / b.tolerance);
     SampledEvaluation result{prepare(state, model, control, nullptr, b), {}};

@@ -1,5 +1,6 @@
 #include "engine/workspace.h"
 
+#include "engine/checks.h"
 #include "engine/lean_resize.h"
 #include "engine/team.h"
 
@@ -117,6 +118,7 @@ void locate(const State& s, const Model& m, Workspace::Buffers& b)
         b.box.length == s.box.length && b.position == s.position && b.radius == s.radius)
         return;
     b.located = false;
+    check_geometry(s);
     if (b.neighbours.update(s, range, b.threads)) make_pattern(s, b);
     std::atomic<bool> good = true;
     with_team(b.threads, [&](const Team& team) {

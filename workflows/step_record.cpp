@@ -61,7 +61,7 @@ StepRecord read_record(const std::filesystem::path& path)
         ArchiveReader a(bytes);
         a(record);
         a.finish();
-        if (record.state) check_state(*record.state);
+        if (record.state) check_stored_state(*record.state);
         if (!Json::accept(record.results)) ArchiveReader::refuse("has results that are not JSON");
     } catch (const Error& error) {
         throw error.within(path.string());

@@ -169,7 +169,7 @@ TEST(Memory, DamagedBytesAreRefusedOrHarmless)
             ArchiveReader reader(bytes);
             State damaged;
             reader(damaged);
-            check_state(damaged);
+            check_stored_state(damaged);
             Workspace other({SolverKind::lagged_cholesky, 1e-3});
             restore_memory(damaged, model, other, reader);
             reader.finish();

@@ -22,7 +22,7 @@ try {
     ArchiveReader a(content);
     State state;
     a(state);
-    check_state(state);
+    check_stored_state(state);
     Workspace workspace({solver, 1e-3});
     const Model model;
     restore_memory(state, model, workspace, a);
