@@ -19,6 +19,12 @@ struct Box {
     double volume() const { return length.prod(); }
 };
 
+template <class Archive>
+void archive(Archive& a, Box& box)
+{
+    a(box.length, box.offset);
+}
+
 /// Nearest integer, halves to even; two additions instead of a library call. |x| < 2^51.
 inline double nearest_integer(double x)
 {

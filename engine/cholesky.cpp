@@ -44,6 +44,7 @@ struct Cholesky::Impl {
     Slots slots;
     std::vector<DiagonalSlice<d8>> blocks;
     int n = 0;
+    std::vector<Candidate> candidates;
 
     Impl()
     {
@@ -78,32 +79,32 @@ struct Cholesky::Impl {
                         std::to_string(common.status) + ")");
     }
 
-    std::vector<int> particle_order(int particles, const std::vector<Candidate>& candidates);
+    std::vector<int> particle_order();
+    void factorise();
 };
 
 // Fill-reducing order of the particles: AMD or METIS, whichever CHOLMOD finds better.
-std::vector<int> Cholesky::Impl::particle_order(int particles,
-                                                const std::vector<Candidate>& candidates)
+std::vector<int> Cholesky::Impl::particle_order()
 {
-    const std::size_t entries = candidates.size() + particles;
+    const std::size_t entries = candidates.size() + n;
     cholmod_sparse* graph =
-        cholmod_allocate_sparse(particles, particles, entries, 1, 1, -1, CHOLMOD_PATTERN, &common);
+        cholmod_allocate_sparse(n, n, entries, 1, 1, -1, CHOLMOD_PATTERN, &common);
     check(graph, "allocation");
     auto* start = static_cast<int*>(graph->p);
     auto* row = static_cast<int*>(graph->i);
     int entry = 0;
     std::size_t k = 0;
-    for (int i = 0; i < particles; ++i) {
+    for (int i = 0; i < n; ++i) {
         start[i] = entry;
         row[entry++] = i;
         for (; k < candidates.size() && candidates[k].i == i; ++k) row[entry++] = candidates[k].j;
     }
-    start[particles] = entry;
+    start[n] = entry;
     cholmod_factor* symbolic = cholmod_analyze(graph, &common);
     cholmod_free_sparse(&graph, &common);
     check(symbolic, "ordering");
     const auto* permutation = static_cast<const int*>(symbolic->Perm);
-    std::vector<int> order(permutation, permutation + particles);
+    std::vector<int> order(permutation, permutation + n);
     cholmod_free_factor(&symbolic, &common);
     return order;
 }
@@ -118,6 +119,7 @@ void Cholesky::set_pattern(int n, const std::vector<Candidate>& candidates)
     Impl& s = *impl_;
     s.release_pattern();
     s.n = n;
+    s.candidates = candidates;
     const std::size_t size = static_cast<std::size_t>(n) * block;
     const std::size_t entries =
         candidates.size() * block * block + static_cast<std::size_t>(n) * (block * (block + 1) / 2);
@@ -144,7 +146,7 @@ void Cholesky::set_pattern(int n, const std::vector<Candidate>& candidates)
         first = last;
     }
     start[size] = entry;
-    const std::vector<int> order = s.particle_order(n, candidates);
+    const std::vector<int> order = s.particle_order();
     std::vector<int> permutation(size);
     for (int i = 0; i < n; ++i)
         for (int c = 0; c < block; ++c) permutation[i * block + c] = order[i] * block + c;
@@ -177,18 +179,24 @@ void Cholesky::factorise(const ResistanceMatrix& matrix)
             std::memcpy(value + s.slots.candidate[k * block + c], lower.data() + c * block,
                         block * sizeof(double));
     }
+    s.factorise();
+}
+
+// Of the values in the sparse matrix.
+void Cholesky::Impl::factorise()
+{
     const OneThread alone;
-    const int good = cholmod_factorize(s.matrix, s.factor, &s.common);
-    if (s.common.status == CHOLMOD_NOT_POSDEF) {
-        const auto* permutation = static_cast<const int*>(s.factor->Perm);
-        const int pivot = static_cast<int>(s.factor->minor);
-        const int particle = pivot < s.n * block ? permutation[pivot] / block : -1;
-        s.common.status = CHOLMOD_OK;
+    const int good = cholmod_factorize(matrix, factor, &common);
+    if (common.status == CHOLMOD_NOT_POSDEF) {
+        const auto* permutation = static_cast<const int*>(factor->Perm);
+        const int pivot = static_cast<int>(factor->minor);
+        const int particle = pivot < n * block ? permutation[pivot] / block : -1;
+        common.status = CHOLMOD_OK;
         throw Error(ErrorKind::numerics, "",
                     "resistance matrix is not positive definite (first bad pivot at particle " +
                         std::to_string(particle) + ")");
     }
-    s.check(good, "factorisation");
+    check(good, "factorisation");
 }
 
 void Cholesky::solve(const std::vector<const Velocities*>& right_hand_sides,
@@ -214,6 +222,33 @@ void Cholesky::solve(const std::vector<const Velocities*>& right_hand_sides,
         solutions[k]->resize(s.n);
         std::memcpy(static_cast<void*>(solutions[k]->data()), x + k * size, size * sizeof(double));
     }
+}
+
+int Cholesky::particles() const
+{
+    return impl_->n;
+}
+
+void Cholesky::archive(ArchiveWriter& a)
+{
+    const Impl& s = *impl_;
+    a(s.n, s.candidates);
+    a.raw(s.matrix->x, s.matrix->nzmax * sizeof(double));
+}
+
+void Cholesky::archive(ArchiveReader& a)
+{
+    int n = 0;
+    std::vector<Candidate> candidates;
+    a(n, candidates);
+    check_candidates(candidates, n);
+    // every block is in the archive: a number of particles that it cannot hold is refused first
+    const std::size_t values =
+        candidates.size() * block * block + static_cast<std::size_t>(n) * (block * (block + 1) / 2);
+    if (n < 1 || a.left() / sizeof(double) < values) ArchiveReader::refuse("ends too early");
+    set_pattern(n, candidates);
+    a.raw(impl_->matrix->x, values * sizeof(double));
+    impl_->factorise();
 }
 
 std::string cholesky_version()

@@ -6,6 +6,7 @@
 // same. Errors: numerics "not positive definite" with the particle of the first bad pivot; never a
 // fall-back.
 #pragma once
+#include "engine/archive.h"
 #include "engine/pairs.h"
 #include "engine/resistance_matrix.h"
 
@@ -31,6 +32,12 @@ public:
     /// Solves for several right-hand sides at once, with the last factor; each [n].
     void solve(const std::vector<const Velocities*>& right_hand_sides,
                const std::vector<Velocities*>& solutions);
+
+    int particles() const;
+    /// The last matrix that was factorised, with its pattern; restoring factorises it again, which
+    /// gives the same factor bit by bit. Errors: input, numerics.
+    void archive(ArchiveWriter& a);
+    void archive(ArchiveReader& a);
 
 private:
     struct Impl;

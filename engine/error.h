@@ -12,15 +12,16 @@
 namespace sigmaflow {
 
 enum class ErrorKind {
-    usage = 64,      // wrong command line
-    input = 65,      // invalid workflow, case or other data of the user
-    missing = 66,    // an input file does not exist or cannot be read
-    rendering = 69,  // no picture can be drawn on this machine
-    numerics = 70,   // not positive definite, NaN, no convergence
-    internal = 71,   // a bug in sigmaflow
-    file = 73,       // a file cannot be written
-    no_space = 74,   // the disk is full
-    locked = 75,     // another process works on the same folder
+    interrupted = 3,  // stopped on request; the same command goes on
+    usage = 64,       // wrong command line
+    input = 65,       // invalid workflow, case or other data of the user
+    missing = 66,     // an input file does not exist or cannot be read
+    rendering = 69,   // no picture can be drawn on this machine
+    numerics = 70,    // not positive definite, NaN, no convergence
+    internal = 71,    // a bug in sigmaflow
+    file = 73,        // a file cannot be written
+    no_space = 74,    // the disk is full
+    locked = 75,      // another process works on the same folder
 };
 
 class Error : public std::runtime_error {

@@ -48,6 +48,12 @@ struct ContactMotion {
     Vec3 slip, roll;  // tangential surface velocity, rolling velocity [a rate0]
 };
 
+template <class Archive>
+void archive(Archive& a, ContactMotion& m)
+{
+    a(m.slip, m.roll);
+}
+
 struct Evaluation {
     Model model;
     Control control;

@@ -31,6 +31,12 @@ struct SampleField {
 /// All scalars of a sample in the order in which they are written.
 std::span<const SampleField> sample_fields();
 
+template <class Archive>
+void archive(Archive& a, Sample& sample)
+{
+    for (const SampleField& field : sample_fields()) a(sample.*field.value);
+}
+
 /// One touching pair as it is drawn and stored.
 struct ContactForce {
     int i = 0, j = 0;
@@ -40,6 +46,12 @@ struct ContactForce {
     Vec3 tangential_force = Vec3::Zero();  // friction on i [F*]
     bool sliding = false, frictional = false;
 };
+
+template <class Archive>
+void archive(Archive& a, ContactForce& c)
+{
+    a(c.i, c.j, c.start, c.end, c.xi, c.normal_force, c.tangential_force, c.sliding, c.frictional);
+}
 
 struct Frame {
     State state;
@@ -54,5 +66,12 @@ struct Frame {
     std::vector<Mat3> particle_stress;     // S_i [sigma0 a^3]: 2 eta0 E + sum S_i/V = total, [n]
     std::vector<ContactForce> contacts;    // sorted by (i, j)
 };
+
+template <class Archive>
+void archive(Archive& a, Frame& f)
+{
+    a(f.state, f.sample, f.volume_fraction, f.velocity, f.angular_velocity, f.nonaffine_velocity,
+      f.nonaffine_speed, f.contact_number, f.species, f.particle_stress, f.contacts);
+}
 
 }

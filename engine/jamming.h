@@ -31,6 +31,12 @@ struct JammingWindow {
     bool jammed = false;
 };
 
+template <class Archive>
+void archive(Archive& a, JammingWindow& w)
+{
+    a(w.duration, w.strain_gain, w.mean_viscosity, w.force_residual, w.jammed);
+}
+
 class JammingMonitor {
 public:
     /// stress: the imposed one [sigma0] > 0
@@ -40,6 +46,12 @@ public:
     bool observe(const State& state, const Evaluation& evaluation);
 
     const JammingWindow& last_window() const { return window_; }
+
+    template <class Archive>
+    void archive(Archive& a)
+    {
+        a(start_time_, start_strain_, started_, window_);
+    }
 
 private:
     JammingCriterion criterion_;

@@ -43,6 +43,17 @@ struct ImposedRate {
 };
 using Control = std::variant<ImposedStress, ImposedRate>;
 
+template <class Archive>
+void archive(Archive& a, ImposedStress& stress)
+{
+    a(stress.value);
+}
+template <class Archive>
+void archive(Archive& a, ImposedRate& rate)
+{
+    a(rate.value);
+}
+
 /// Spring constants in force in F*/a after the stiffness rule.
 struct Stiffness {
     double normal, tangential, rolling;

@@ -57,6 +57,13 @@ double overlap_forces(const State& s, const NeighbourList& list, std::vector<Vec
     return smallest;
 }
 
+Vec3 box_of(const PackingParameters& p, const std::vector<double>& radii)
+{
+    double solid = 0;
+    for (double a : radii) solid += 4 * pi / 3 * a * a * a;
+    return p.box_shape * std::cbrt(solid / p.volume_fraction / p.box_shape.prod());
+}
+
 // Distance by which the longest diagonal neighbour of a particle lies within half a box.
 void check_box(const State& s)
 {
@@ -71,14 +78,18 @@ void check_box(const State& s)
 
 }
 
+Vec3 packing_box(const PackingParameters& p)
+{
+    check(p);
+    return box_of(p, radii_of(p));
+}
+
 State random_packing(const PackingParameters& p, const PackingProgress& progress)
 {
     check(p);
     State s;
     s.radius = radii_of(p);
-    double solid = 0;
-    for (double a : s.radius) solid += 4 * pi / 3 * a * a * a;
-    s.box.length = p.box_shape * std::cbrt(solid / p.volume_fraction / p.box_shape.prod());
+    s.box.length = box_of(p, s.radius);
     check_box(s);
     for (int i = 0; i < s.size(); ++i) {
         const auto u = [&](int axis) { return uniform(p.seed, 0, 3 * std::uint64_t(i) + axis); };

@@ -27,6 +27,9 @@ struct PackingParameters {
     int max_iterations = 200000;
 };
 
+/// Lengths of the box of such a packing [a].
+Vec3 packing_box(const PackingParameters& parameters);
+
 /// Called now and then with the iteration and the smallest xi of the enlarged spheres.
 using PackingProgress = std::function<void(int iteration, double smallest_xi)>;
 

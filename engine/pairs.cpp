@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <mutex>
 #include <string>
 
 namespace sigmaflow {
@@ -200,18 +202,43 @@ bool NeighbourList::update(const State& state, double range, int threads)
 
 void NeighbourList::rebuild(const State& state, double range, int threads)
 {
-    const bool follows = range == range_ && updates_ > 0;
-    skin_ = follows ? std::clamp(std::sqrt(rebuilding_cost * used_ / updates_), least_skin,
+    const bool follows = range == range_ && use_.updates > 0;
+    skin_ = follows ? std::clamp(std::sqrt(rebuilding_cost * use_.used / use_.updates), least_skin,
                                  largest_skin)
                     : first_skin;
     range_ = range;
-    updates_ = 0;
+    use_.updates = 0;
     reach_ = state.radius.empty() ? 0 : largest_radius(state) * (2 + range);
     close_pairs(state, range, skin_, threads, search_, candidates_);
     reference_.box = state.box;
     reference_.position = state.position;
     reference_.radius = state.radius;
     reference_.strain = state.strain;
+}
+
+void check_candidates(const std::vector<Candidate>& candidates, int n)
+{
+    Candidate before{-1, n};
+    for (const Candidate& c : candidates) {
+        const bool later = c.i > before.i || (c.i == before.i && c.j > before.j);
+        if (!later || c.i >= c.j || c.j >= n)
+            throw Error(ErrorKind::input, "", "pairs must be sorted, i < j < " + std::to_string(n));
+        before = c;
+    }
+}
+
+void NeighbourList::find_again(const State& state, int threads)
+{
+    const auto good = [&] {
+        return reference_.radius == state.radius && reference_.contacts.empty() &&
+               reference_.box.length == state.box.length && range_ >= 0 && range_ < 100 &&
+               skin_ >= 0 && skin_ <= largest_skin && use_.used >= 0 && use_.updates >= 0 &&
+               use_.updates < std::numeric_limits<int>::max();
+    };
+    check_stored_state(reference_);
+    if (!good()) throw Error(ErrorKind::input, "", "has neighbours of another state");
+    reach_ = largest_radius(state) * (2 + range_);
+    close_pairs(reference_, range_, skin_, threads, search_, candidates_);
 }
 
 // A pair in range now had |d| <= (1 + |strain|)(reach + w_i + w_j) at the rebuild, w =
@@ -235,6 +262,7 @@ bool NeighbourList::covers(const State& state, double range, int threads)
         }
     };
     Largest largest;
+    std::mutex one_at_a_time;
     with_team(threads, [&](const Team& team) {
         const Range own = team.share(0, state.size());
         Largest mine;
@@ -243,16 +271,14 @@ bool NeighbourList::covers(const State& state, double range, int threads)
             moved.x() += strain * moved.y();
             mine.add(images.separation(moved, state.position[i]).d.squaredNorm());
         }
-#pragma omp critical
-        {
-            largest.add(mine.first);
-            largest.add(mine.second);
-        }
+        const std::lock_guard lock(one_at_a_time);
+        largest.add(mine.first);
+        largest.add(mine.second);
     });
     const double now = reach_ + std::sqrt(largest.first) + std::sqrt(largest.second);
-    used_ = (1 + std::abs(strain)) * now - reach_;
-    ++updates_;
-    return used_ <= skin_;
+    use_.used = (1 + std::abs(strain)) * now - reach_;
+    ++use_.updates;
+    return use_.used <= skin_;
 }
 
 void find_pairs(const State& s, double range, const NeighbourList& list, std::vector<Pair>& pairs)

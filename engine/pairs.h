@@ -28,8 +28,15 @@ struct Pair {
     bool touching() const { return xi <= 0; }
 };
 
+template <class Archive>
+void archive(Archive& a, Pair& p)
+{
+    a(p.i, p.j, p.image, p.separation, p.normal, p.distance, p.gap, p.xi);
+}
+
 struct Candidate {
     int i, j;
+    using stored_as_bytes = void;
 };
 
 /// Cells of at least the reach in y and z, and in x; the particles cell by cell.
@@ -61,19 +68,41 @@ public:
 
     const std::vector<Candidate>& candidates() const { return candidates_; }
 
+    /// How the skin was used since the last rebuild: the next skin follows from it.
+    struct Use {
+        double used = 0;  // of the skin, at the last update [a]
+        int updates = 0;
+    };
+    const Use& use() const { return use_; }
+    void set_use(const Use& use) { use_ = use; }
+
+    bool empty() const { return range_ < 0; }
+    /// Positions, box and strain at the last rebuild; no contacts.
+    const State& reference() const { return reference_; }
+    /// All but the candidates, which find_again() finds from the rest.
+    template <class Archive>
+    void archive(Archive& a)
+    {
+        a(reference_, range_, skin_, use_.used, use_.updates);
+    }
+    /// Errors: input (not the list of this state).
+    void find_again(const State& state, int threads);
+
 private:
     bool covers(const State& state, double range, int threads);
     void rebuild(const State& state, double range, int threads);
 
     std::vector<Candidate> candidates_;
     PairSearch search_;
-    State reference_;    // positions, box and strain at the last rebuild; no contacts
+    State reference_;
     double range_ = -1;  // in xi
     double reach_ = 0;   // largest centre distance of interest [a]
     double skin_ = 0;    // [a]
-    double used_ = 0;    // of the skin, at the last update [a]
-    int updates_ = 0;    // since the last rebuild
+    Use use_;
 };
+
+/// For candidates that come from a file. Error(input) unless they are sorted pairs i < j < n.
+void check_candidates(const std::vector<Candidate>& candidates, int n);
 
 /// All pairs i < j closer than `cutoff(a_i + a_j)` = (a_i + a_j)(1 + range/2) + skin, sorted.
 std::vector<Candidate> close_pairs(const State& state, double range, double skin);

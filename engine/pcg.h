@@ -30,6 +30,17 @@ class ConjugateGradients {
 public:
     /// Forgets the incomplete factor: the next solve makes a new one.
     void forget() { age_ = -1; }
+    /// The incomplete factor, which may belong to an earlier matrix, and its age. Errors: input.
+    template <class Archive>
+    void archive(Archive& a)
+    {
+        std::vector<Inverse> none;
+        a(age_, fresh_iterations_);
+        a(age_ < 0 ? none : inverse_);
+        if (age_ < -1 || fresh_iterations_ < 0 || age_ > most_solves ||
+            fresh_iterations_ > most_solves)
+            throw Error(ErrorKind::input, "", "has a factor of unknown age");
+    }
 
     /// x: the guess on entry. Sets iterations and residual of the report; false if the tolerance
     /// was not reached.
@@ -48,6 +59,7 @@ private:
     /// Upper triangles of symmetric 6x6 blocks, row by row.
     struct alignas(64) Inverse {
         V v[21];
+        using stored_as_bytes = void;
     };
     struct alignas(64) DoubleInverse {
         d8 v[21];
@@ -59,6 +71,8 @@ private:
     void factorise(const ResistanceMatrix& matrix, Range range);
     bool work(const ResistanceProblem& problem, const SlicedVector& b, SlicedVector& x,
               double tolerance, int most, const Team& team, SolveReport& report);
+
+    static constexpr int most_solves = 1'000'000;
 
     bool indefinite_ = false;   // a diagonal block of the matrix is not positive definite
     int age_ = -1;              // solves since the factor was made; -1: there is none

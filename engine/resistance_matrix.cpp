@@ -116,7 +116,7 @@ void multiply(const ResistanceMatrix& m, const SlicedVector& v, SlicedVector& re
     write_rows(v, {0, count}, rows.data());
     const SlicedVector zero(count + 1);
     result.resize(count + 1);
-    result.back() = Slice6{};
+    result.back() = Slice6{};  // may hold values from a time with more slices
     subtract_product(m, v, rows.data(), zero, {0, count}, result);
     for (Slice6& slice : result)
         for (d8& c : slice.c) c = -c;

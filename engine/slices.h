@@ -68,6 +68,7 @@ private:
 /// slice is zero.
 struct alignas(64) Slice6 {
     d8 c[6];
+    using stored_as_bytes = void;
 };
 using SlicedVector = std::vector<Slice6>;
 

@@ -110,6 +110,15 @@ struct ResistanceSolver::Impl {
                          const SlicedVector& x);
     bool iterate_with_factor(const ResistanceProblem& problem, const SlicedVector& b,
                              double tolerance, SlicedVector& x, SolveReport& report);
+
+    template <class Archive>
+    void archive(Archive& a)
+    {
+        a(precise_left, gradients, precise_gradients);
+        if (settings.kind != SolverKind::lagged_cholesky) return;  // others make their factor anew
+        a(factorised);
+        if (factorised) a(analysed, cholesky);
+    }
 };
 
 // x = R^-1 b + s R^-1 f with s = w f.R^-1 b/(1 - w f.R^-1 f)   (Sherman & Morrison 1950)
@@ -258,6 +267,21 @@ SolveReport ResistanceSolver::solve_directly(const ResistanceMatrix& matrix,
         report.residual = std::max(report.residual, residual);
     }
     return report;
+}
+
+void ResistanceSolver::save(ArchiveWriter& archive)
+{
+    impl_->archive(archive);
+}
+
+void ResistanceSolver::restore(ArchiveReader& archive)
+{
+    Impl& s = *impl_;
+    s.archive(archive);
+    if (s.precise_left < 0 || s.precise_left > precise_solves)
+        throw Error(ErrorKind::input, "", "has a solver that does not exist");
+    if (s.factorised && s.cholesky.particles() != s.particles)
+        throw Error(ErrorKind::input, "", "has a factor of another number of particles");
 }
 
 std::string solver_version()

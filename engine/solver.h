@@ -17,6 +17,7 @@
 // Errors: numerics (R not positive definite, b not finite, residual of a direct solution beyond its
 // limit).
 #pragma once
+#include "engine/archive.h"
 #include "engine/pairs.h"
 #include "engine/resistance_matrix.h"
 #include "engine/types.h"
@@ -69,6 +70,11 @@ public:
     SolveReport solve_directly(const ResistanceMatrix& matrix,
                                const std::vector<const Velocities*>& b,
                                const std::vector<Velocities*>& x);
+
+    /// What the next solve takes from earlier ones: factors of earlier matrices and their age. To
+    /// be restored after set_pattern. Errors: input (not of as many particles).
+    void save(ArchiveWriter& archive);
+    void restore(ArchiveReader& archive);
 
 private:
     struct Impl;

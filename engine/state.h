@@ -15,6 +15,12 @@ struct Contact {
     bool sliding = false;
 };
 
+template <class Archive>
+void archive(Archive& a, Contact& c)
+{
+    a(c.i, c.j, c.spring, c.rolling, c.sliding);
+}
+
 struct State {
     Box box;
     std::vector<Vec3> position;     // [n] [a]
@@ -26,6 +32,16 @@ struct State {
 
     int size() const { return static_cast<int>(radius.size()); }
 };
+
+template <class Archive>
+void archive(Archive& a, State& s)
+{
+    a(s.box, s.position, s.radius, s.contacts, s.strain, s.time, s.time_step);
+}
+
+/// For states that come from a file: at least one particle, radii and box positive, everything
+/// finite, no position farther than 1e9 boxes, contacts sorted pairs of particles. Errors: input.
+void check_stored_state(const State& state);
 
 /// Sum of the particle volumes over the box volume [-].
 double volume_fraction(const State& state);

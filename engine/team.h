@@ -14,6 +14,7 @@
 #include <omp.h>
 #include <atomic>
 #include <thread>
+#include <vector>
 
 namespace sigmaflow {
 
@@ -95,8 +96,16 @@ void with_team(int threads, const Work& work)
         return;
     }
     SpinBarrier meeting;
+#if defined(__SANITIZE_THREAD__)  // which cannot see inside libgomp
+    std::vector<std::thread> others;
+    for (int rank = 1; rank < threads; ++rank)
+        others.emplace_back([&, rank] { work(Team{rank, threads, &meeting}); });
+    work(Team{0, threads, &meeting});
+    for (std::thread& other : others) other.join();
+#else
 #pragma omp parallel num_threads(threads)
     work(Team{omp_get_thread_num(), omp_get_num_threads(), &meeting});
+#endif
 }
 
 /// work(k) for k = 0 ... count - 1, on every member a part; few are not worth a team.

@@ -5,6 +5,7 @@
 #include "engine/team.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace sigmaflow {
@@ -49,8 +50,6 @@ void recycle(Evaluation&& evaluation, Workspace& workspace)
     if (spare.size() < 2) spare.push_back(std::move(evaluation));
 }
 
-namespace {
-
 void make_pattern(const State& s, Workspace::Buffers& b)
 {
     const auto& candidates = b.neighbours.candidates();
@@ -72,6 +71,8 @@ void make_pattern(const State& s, Workspace::Buffers& b)
     b.right.resize(count);
     b.right.back() = Slice6{};
 }
+
+namespace {
 
 void find_touching(const State& s, Workspace::Buffers& b)
 {
@@ -119,17 +120,14 @@ void locate(const State& s, const Model& m, Workspace::Buffers& b)
     b.located = false;
     check_geometry(s);
     if (b.neighbours.update(s, range, b.threads)) make_pattern(s, b);
-    bool good = true;
+    std::atomic<bool> good = true;
     with_team(b.threads, [&](const Team& team) {
         team.own(b.slices, [&](Range own) { write_positions(s, b.slices, own, b.row_values()); });
         if (team.rank == 0)  // the particle of unused lanes, where no other is
             std::fill_n(b.row_values() + 4 * b.slices.slots(), 3, -s.box.length.x() / 3);
         team.barrier();
         team.own(b.slices, [&](Range own) {
-            if (!find_geometry(b.slices, s.box, b.row_values(), own, b.table)) {
-#pragma omp atomic write
-                good = false;
-            }
+            if (!find_geometry(b.slices, s.box, b.row_values(), own, b.table)) good = false;
         });
     });
     if (!good) find_pairs(s, range, b.neighbours);  // throws and says which centres coincide

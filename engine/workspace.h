@@ -21,11 +21,23 @@ struct SolutionHistory {
     void remember(double at, const Velocities& v, double shear_rate);
 };
 
+template <class Archive>
+void archive(Archive& a, SolutionHistory& h)
+{
+    a(h.known, h.time, h.rate, h.solution);
+}
+
 /// Mean motion over an implicit step, as seen from its end: the next step leans on it.
 struct PastStep {
     double time = -1, dt = 0;  // at its end; its length
     Evaluation mean;           // nonaffine, shear_rate, contacts, motion
 };
+
+template <class Archive>
+void archive(Archive& a, PastStep& p)
+{
+    a(p.time, p.dt, p.mean.nonaffine, p.mean.shear_rate, p.mean.contacts, p.mean.motion);
+}
 
 /// Rows of eight doubles, aligned.
 struct alignas(64) Row {
@@ -80,6 +92,9 @@ double interaction_range(const Model& model);
 
 /// Neighbours, geometry and touching pairs of a state: nothing if they are known.
 void locate(const State& state, const Model& model, Workspace::Buffers& buffers);
+
+/// Slices, shapes and patterns for the neighbours in the buffers, which were found for `state`.
+void make_pattern(const State& state, Workspace::Buffers& buffers);
 
 /// Geometry, forces and resistance matrix of a state, in the buffers; contact forces also in the
 /// result. Springs act over the time `ahead` if there is one (implicit stages).

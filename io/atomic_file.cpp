@@ -1,9 +1,10 @@
 #include "io/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -55,6 +56,17 @@ OutputFile::OutputFile(std::filesystem::path path)
     if (descriptor_ < 0) throw write_error(path_, errno);
 }
 
+OutputFile::OutputFile(std::filesystem::path path, std::uint64_t size)
+    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC))
+{
+    if (descriptor_ < 0) throw write_error(path_, errno);
+    const auto end = static_cast<off_t>(size);
+    if (::ftruncate(descriptor_, end) == 0 && ::lseek(descriptor_, end, SEEK_SET) == end) return;
+    const int reason = errno;
+    ::close(descriptor_);
+    throw write_error(path_, reason);
+}
+
 OutputFile::~OutputFile()
 {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -88,6 +100,11 @@ void commit_file(const std::filesystem::path& temporary, const std::filesystem::
 {
     sync_path(temporary, O_RDONLY);
     if (::rename(temporary.c_str(), path.c_str()) != 0) throw write_error(path, errno);
+    sync_entry(path);
+}
+
+void sync_entry(const std::filesystem::path& path)
+{
     sync_path(path.has_parent_path() ? path.parent_path() : ".", O_RDONLY | O_DIRECTORY);
 }
 
@@ -111,26 +128,97 @@ void write_file(const std::filesystem::path& path, std::string_view text)
     }
 }
 
-std::string read_file(const std::filesystem::path& path)
+namespace {
+
+Error unreadable(const std::filesystem::path& path, const std::string& problem)
 {
-    const auto unreadable = [&path](int error_number) {
-        return Error(ErrorKind::missing, path.string(),
-                     std::string("cannot be read: ") + std::strerror(error_number));
-    };
-    const Descriptor opened(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (opened.value() < 0) throw unreadable(errno);
-    std::string text;
-    std::array<char, 65536> buffer;
-    while (true) {
-        const ssize_t got = ::read(opened.value(), buffer.data(), buffer.size());
+    return Error(ErrorKind::missing, path.empty() ? "\"\"" : path.string(), problem);
+}
+
+std::string system_reason()
+{
+    return std::string("cannot be read: ") + std::strerror(errno);
+}
+
+void require_regular(const std::filesystem::path& path, const struct stat& status)
+{
+    if (S_ISDIR(status.st_mode)) throw unreadable(path, "is a folder, not a file");
+    if (!S_ISREG(status.st_mode))
+        throw unreadable(path, "is not a regular file (a device, pipe or socket)");
+}
+
+/// Waits for nobody: a pipe or a device is recognised before it is opened.
+int open_regular(const std::filesystem::path& path)
+{
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) throw unreadable(path, system_reason());
+    require_regular(path, status);
+    return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+}
+
+/// Its size; the file may have been exchanged since it was looked at.
+std::size_t size_of(const Descriptor& opened, const std::filesystem::path& path)
+{
+    struct stat status {};
+    if (opened.value() < 0 || ::fstat(opened.value(), &status) != 0)
+        throw unreadable(path, system_reason());
+    require_regular(path, status);
+    return static_cast<std::size_t>(status.st_size);
+}
+
+}
+
+void read_pieces(const std::filesystem::path& path, std::uint64_t size,
+                 const std::function<void(std::string_view)>& take)
+{
+    const Descriptor opened(open_regular(path));
+    if (opened.value() < 0) throw unreadable(path, system_reason());
+    std::string buffer(std::size_t{1} << 20, '\0');
+    while (size > 0) {
+        const auto wanted = std::min<std::uint64_t>(size, buffer.size());
+        const ssize_t got = ::read(opened.value(), buffer.data(), wanted);
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0) throw unreadable(errno);
-        if (got == 0) return text;
-        text.append(buffer.data(), static_cast<std::size_t>(got));
-        if (text.size() > largest_text_file)
-            throw Error(ErrorKind::input, path.string(),
-                        "must not be larger than " + std::to_string(largest_text_file) + " bytes");
+        if (got < 0) throw unreadable(path, system_reason());
+        if (got == 0) return;
+        take({buffer.data(), static_cast<std::size_t>(got)});
+        size -= static_cast<std::uint64_t>(got);
     }
+}
+
+std::string read_file(const std::filesystem::path& path, std::size_t largest)
+{
+    const Descriptor opened(open_regular(path));
+    const auto refuse_above = [&](std::size_t size) {
+        if (size > largest)
+            throw Error(ErrorKind::input, path.string(),
+                        "must not be larger than " + std::to_string(largest) + " bytes, got " +
+                            std::to_string(size));
+    };
+    const std::size_t size = size_of(opened, path);
+    refuse_above(size);
+    std::string text(size + 1, '\0');  // the last read finds the end
+    std::size_t used = 0;
+    while (true) {
+        const ssize_t got = ::read(opened.value(), text.data() + used, text.size() - used);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) throw unreadable(path, system_reason());
+        if (got == 0) break;
+        used += static_cast<std::size_t>(got);
+        refuse_above(used);  // it grows
+        if (used == text.size()) text.resize(2 * used);
+    }
+    text.resize(used);
+    return text;
+}
+
+std::string first_bytes(const std::filesystem::path& path, std::size_t count)
+{
+    const Descriptor opened(open_regular(path));
+    std::string text(std::min(count, size_of(opened, path)), '\0');
+    const ssize_t got = ::read(opened.value(), text.data(), text.size());
+    if (got < 0) throw unreadable(path, system_reason());
+    text.resize(static_cast<std::size_t>(got));
+    return text;
 }
 
 }

@@ -2,9 +2,11 @@
 
 #include "engine/error.h"
 #include "engine/lubrication/pair_resistance.h"
+#include "engine/pairs.h"
 #include "engine/step.h"
 #include "io/atomic_file.h"
 #include "io/model_fields.h"
+#include "io/state_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +38,11 @@ Json array_of(const Items& items, const Make& make)
     return result;
 }
 
+// Far beyond anything physical, small enough for every product in the engine.
+constexpr Range coordinate = between(-1e9, 1e9), box_length = above_to(0, 1e6);  // [a]
+constexpr Range stretch = between(-100, 100), sphere_radius = between(0.01, 100);
+constexpr Range velocity = between(-1e9, 1e9);  // [a rate0], [rate0]
+
 Contact read_contact(const JsonNode& node, int particles)
 {
     node.refuse_other_keys({"i", "j", "spring", "rolling", "sliding"});
@@ -43,8 +50,8 @@ Contact read_contact(const JsonNode& node, int particles)
     c.i = static_cast<int>(node.member("i").integer(0, particles - 1));
     c.j = static_cast<int>(node.member("j").integer(0, particles - 1));
     if (c.i >= c.j) throw node.error("needs i < j");
-    c.spring = node.member("spring").vector({}, "a");
-    if (const auto rolling = node.find("rolling")) c.rolling = rolling->vector({}, "a");
+    c.spring = node.member("spring").vector(stretch, "a");
+    if (const auto rolling = node.find("rolling")) c.rolling = rolling->vector(stretch, "a");
     if (const auto sliding = node.find("sliding")) c.sliding = sliding->boolean();
     return c;
 }
@@ -79,13 +86,7 @@ Json pairs_json(const Case& one, const Evaluation& e)
     };
     if (one.pair_rows.empty())
         for (std::size_t row = 0; row < e.pairs.size(); ++row) show(row);
-    for (int row : one.pair_rows) {
-        if (row >= static_cast<int>(e.pairs.size()))
-            throw Error(ErrorKind::input, "/pair_rows",
-                        "row " + std::to_string(row) + " of " + std::to_string(e.pairs.size()) +
-                            " pairs in range");
-        show(row);
-    }
+    for (int row : one.pair_rows) show(static_cast<std::size_t>(row));
     return rows;
 }
 
@@ -120,18 +121,49 @@ Json columns_json(const DetailedEvaluation& e)
     return columns;
 }
 
-Json pair_case_json(const JsonNode& node)
+/// One entry of a case of kind "pairs".
+struct PairCase {
+    double radius_i, radius_j, xi, delta;
+    Vec3 normal;
+    Mat3 rate_of_strain;
+    Vec6 nonaffine_i, nonaffine_j;
+};
+
+PairCase read_pair(const JsonNode& node)
 {
-    const double a = node.member("ai").number(above(0), "a");
-    const double b = node.member("aj").number(above(0), "a");
-    const auto [L, l] =
-        lubrication::gap_factors(node.member("xi").number(), node.member("delta").number(above(0)));
-    const auto r = lubrication::scaled(lubrication::pair_coefficients(a, b), L, l);
-    const Vec3 n = node.member("normal").vector();
-    const Mat3 E = node.member("E").matrix();
-    const auto W = node.member("W").elements(Length::exactly(2));
-    std::array<Vec6, 2> w;
-    for (int k = 0; k < 2; ++k) w[k] = Vec6(W[k].numbers(Length::exactly(6)).data());
+    node.refuse_other_keys({"ai", "aj", "xi", "delta", "normal", "E", "W", "expected"});
+    PairCase pair;
+    pair.radius_i = node.member("ai").number(sphere_radius, "a");
+    pair.radius_j = node.member("aj").number(sphere_radius, "a");
+    pair.xi = node.member("xi").number(between(deepest_overlap, 10));
+    pair.delta = node.member("delta").number(between(1e-9, 1));
+    pair.normal = node.member("normal").vector();
+    if (std::abs(pair.normal.norm() - 1) > 1e-9)
+        throw node.member("normal").error("must have the length 1, has " +
+                                          number_text(pair.normal.norm()));
+    pair.rate_of_strain = node.member("E").matrix();
+    const auto velocities = node.member("W").elements(Length::exactly(2));
+    pair.nonaffine_i = Vec6(velocities[0].numbers(Length::exactly(6), velocity).data());
+    pair.nonaffine_j = Vec6(velocities[1].numbers(Length::exactly(6), velocity).data());
+    return pair;
+}
+
+std::vector<PairCase> read_pairs(const JsonNode& root)
+{
+    root.refuse_other_keys({"kind", "name", "description", "provenance", "cases"});
+    std::vector<PairCase> pairs;
+    for (const JsonNode& node : root.member("cases").elements({.minimum = 1}))
+        pairs.push_back(read_pair(node));
+    return pairs;
+}
+
+Json pair_case_json(const PairCase& pair)
+{
+    const auto [L, l] = lubrication::gap_factors(pair.xi, pair.delta);
+    const auto r =
+        lubrication::scaled(lubrication::pair_coefficients(pair.radius_i, pair.radius_j), L, l);
+    const Vec3& n = pair.normal;
+    const Mat3& E = pair.rate_of_strain;
 
     const auto table = [](double v11, double v12, double v21, double v22) {
         return Json{{v11, v12}, {v21, v22}};
@@ -152,7 +184,7 @@ Json pair_case_json(const JsonNode& node)
     const auto six = [](const Vec3& f, const Vec3& t) {
         return Json{f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
     };
-    const auto su = lubrication::velocity_stresslet(r, n, w[0], w[1]);
+    const auto su = lubrication::velocity_stresslet(r, n, pair.nonaffine_i, pair.nonaffine_j);
     const auto se = lubrication::strain_stresslet(r, n, E);
     return {
         {"scalars",
@@ -173,13 +205,43 @@ Json pair_case_json(const JsonNode& node)
 
 TrajectoryPlan read_plan(const JsonNode& expected)
 {
+    constexpr double most_steps = 1e6;
     TrajectoryPlan plan;
-    plan.strain = expected.member("strain").numbers({.minimum = 1}, at_least(0));
-    plan.interval = expected.member("strain_interval").number(above(0));
+    const JsonNode strains = expected.member("strain"),
+                   interval = expected.member("strain_interval");
+    plan.strain = strains.numbers({.minimum = 1}, between(0, 1e4));
+    plan.interval = interval.number(between(1e-6, 100));
+    for (std::size_t k = 0; k < plan.strain.size(); ++k)
+        if (std::abs(plan.strain[k] - static_cast<double>(k) * plan.interval) >
+            1e-6 * plan.interval)
+            throw strains.element(k).wrong(
+                "must be " + std::to_string(k) +
+                " times strain_interval = " + number_text(plan.interval));
     // half the coarse step: its error is stated in the files
     plan.step = plan.interval / 100;
-    if (const auto coarse = expected.find("coarse_step")) plan.step = coarse->number(above(0)) / 2;
+    if (const auto coarse = expected.find("coarse_step"))
+        plan.step = coarse->number(above_to(0, plan.interval)) / 2;
+    if (plan.strain.back() / plan.step > most_steps)
+        throw expected.error("needs more than 1e6 steps: the last strain is " +
+                             number_text(plan.strain.back()) + ", a step " +
+                             number_text(plan.step));
     return plan;
+}
+
+/// An error of the computation, which does not know the file.
+template <class Work>
+auto naming_the_file(const std::filesystem::path& path, const Work& work)
+{
+    try {
+        return work();
+    } catch (const Error& error) {
+        throw error.within(path.string());
+    }
+}
+
+std::size_t kind_of(const JsonNode& root)
+{
+    return root.member("kind").word({"instant", "trajectory", "pairs"});
 }
 
 }
@@ -188,10 +250,11 @@ State read_state(const JsonNode& node)
 {
     node.refuse_other_keys({"box", "offset", "positions", "radii", "contacts"});
     State s;
-    s.box.length = node.member("box").vector(above(0), "a");
-    s.box.offset = node.member("offset").number({}, "a");
-    s.radius = node.member("radii").numbers({.minimum = 1}, above(0), "a");
-    s.position = node.member("positions").vectors(Length::exactly(s.radius.size()), {}, "a");
+    s.box.length = node.member("box").vector(box_length, "a");
+    s.box.offset = node.member("offset").number(coordinate, "a");
+    s.radius = node.member("radii").numbers({.minimum = 1}, sphere_radius, "a");
+    s.position =
+        node.member("positions").vectors(Length::exactly(s.radius.size()), coordinate, "a");
     for (const JsonNode& contact : node.member("contacts").elements())
         s.contacts.push_back(read_contact(contact, s.size()));
     const auto before = [](const Contact& p, const Contact& q) {
@@ -222,6 +285,23 @@ Json state_json(const State& s)
             {"contacts", array_of(s.contacts, contact)}};
 }
 
+namespace {
+
+std::vector<int> read_rows(const JsonNode& node, const Case& one, double range)
+{
+    NeighbourList list;
+    list.update(one.state, range);
+    const std::size_t pairs = find_pairs(one.state, range, list).size();
+    std::vector<int> rows;
+    for (const JsonNode& row : node.elements()) {
+        if (pairs == 0) throw row.error("there are no pairs in range");
+        rows.push_back(static_cast<int>(row.integer(0, static_cast<std::int64_t>(pairs) - 1)));
+    }
+    return rows;
+}
+
+}
+
 Case read_case(const JsonNode& root)
 {
     root.refuse_other_keys({"kind", "name", "description", "provenance", "model", "control", "n",
@@ -233,9 +313,9 @@ Case read_case(const JsonNode& root)
             throw n->wrong("must be the number of radii, " + std::to_string(one.state.size()));
     if (const auto model = root.find("model")) one.model = read_model(*model);
     one.control = read_control(root.member("control"), one.model);
-    if (const auto rows = root.find("pair_rows"))
-        for (const JsonNode& row : rows->elements())
-            one.pair_rows.push_back(static_cast<int>(row.integer(0, 1000000000)));
+    const double range = std::max(one.model.lubrication_range, one.model.repulsion_range);
+    check_state(one.state, range, root.member("state"));
+    if (const auto rows = root.find("pair_rows")) one.pair_rows = read_rows(*rows, one, range);
     return one;
 }
 
@@ -314,24 +394,39 @@ std::string evaluate_case(const std::filesystem::path& path)
 {
     const JsonDocument document = JsonDocument::read(path);
     const JsonNode root = document.root();
-    const std::size_t kind = root.member("kind").word({"instant", "trajectory", "pairs"});
     Json result;
-    try {
-        if (kind == 2)
-            result["cases"] = array_of(root.member("cases").elements(), [](const JsonNode& node) {
-                return Json{{"expected", pair_case_json(node)}};
+    switch (kind_of(root)) {
+        case 0: {
+            const Case one = read_case(root);
+            result["expected"] = naming_the_file(path, [&] { return observables_json(one); });
+            break;
+        }
+        case 1: {
+            const Case one = read_case(root);
+            const TrajectoryPlan plan = read_plan(root.member("expected"));
+            result["expected"] = naming_the_file(path, [&] { return trajectory_json(one, plan); });
+            break;
+        }
+        default:
+            result["cases"] = array_of(read_pairs(root), [](const PairCase& pair) {
+                return Json{{"expected", pair_case_json(pair)}};
             });
-        else if (kind == 1)
-            result["expected"] =
-                trajectory_json(read_case(root), read_plan(root.member("expected")));
-        else
-            result["expected"] = observables_json(read_case(root));
-    } catch (const Error& error) {
-        // errors of the reader name the file already
-        if (error.where().starts_with(path.string())) throw;
-        throw error.within(path.string());
     }
     return result.dump(1) + "\n";
+}
+
+std::string describe_case(const JsonNode& root)
+{
+    const std::size_t kind = kind_of(root);
+    if (kind == 2) return "case, " + std::to_string(read_pairs(root).size()) + " pairs";
+    const Case one = read_case(root);
+    const auto* stress = std::get_if<ImposedStress>(&one.control);
+    std::string text = "case, " + std::to_string(one.state.size()) + " particles, imposed ";
+    text += stress ? "stress " + number_text(stress->value)
+                   : "rate " + number_text(std::get<ImposedRate>(one.control).value);
+    if (kind == 0) return text;
+    const TrajectoryPlan plan = read_plan(root.member("expected"));
+    return text + ", trajectory to strain " + number_text(plan.strain.back());
 }
 
 void write_case(const std::filesystem::path& path, const State& state, const Model& model,

@@ -28,7 +28,8 @@ struct Case {
 /// has relaxed springs.
 Case read_case(const JsonNode& root);
 
-/// Reads {box, offset, positions, radii, contacts}.
+/// Reads {box, offset, positions, radii, contacts}; read_case also does check_state of
+/// state_check.h.
 State read_state(const JsonNode& node);
 nlohmann::ordered_json state_json(const State& state);
 
@@ -45,6 +46,9 @@ nlohmann::ordered_json trajectory_json(const Case& one, const TrajectoryPlan& pl
 
 /// Computes the object {"expected": ...} for the case in a file, as JSON text.
 std::string evaluate_case(const std::filesystem::path& path);
+
+/// Reads the case and says in some words what it is: "case, 50 particles, imposed stress 2".
+std::string describe_case(const JsonNode& root);
 
 /// Writes a state with its model and control as a case of kind "instant".
 void write_case(const std::filesystem::path& path, const State& state, const Model& model,

@@ -6,6 +6,13 @@ namespace sigmaflow::io {
 namespace {
 
 constexpr hsize_t chunk_values = 1024;  // at least; a row that is longer is a chunk of its own
+constexpr hsize_t checksum_bytes = 4;
+
+Shape chunk_of(const Shape& row_shape)
+{
+    return with_rows(std::max<hsize_t>(1, chunk_values / std::max<hsize_t>(1, product(row_shape))),
+                     row_shape);
+}
 
 Hdf5Handle open_dataset(const Hdf5Group& group, const std::string& name)
 {
@@ -19,8 +26,11 @@ void require_all_chunks(const Hdf5Handle& dataset, const Shape& shape, const std
     Shape chunk(shape.size());
     if (H5Pget_chunk(layout.id(), static_cast<int>(chunk.size()), chunk.data()) < 0)
         throw failed_read(where);
-    if (chunk.front() == 0 || with_rows(shape.front(), {chunk.begin() + 1, chunk.end()}) != shape)
+    // as written; other sizes would ask for other amounts of memory than the values need
+    if (chunk != chunk_of({shape.begin() + 1, shape.end()}))
         throw Error(ErrorKind::input, where, "has chunks of the shape " + shape_text(chunk));
+    const Hdf5Handle type(H5Dget_type(dataset.id()), H5Tclose);
+    const hsize_t with_checksum = product(chunk) * H5Tget_size(type.id()) + checksum_bytes;
     for (hsize_t row = 0; row < shape.front(); row += chunk.front()) {
         const Shape start = with_rows(row, Shape(shape.size() - 1, 0));
         unsigned skipped_filters = 0;
@@ -29,7 +39,7 @@ void require_all_chunks(const Hdf5Handle& dataset, const Shape& shape, const std
         if (H5Dget_chunk_info_by_coord(dataset.id(), start.data(), &skipped_filters, &address,
                                        &bytes) < 0)
             throw failed_read(where);
-        if (address == HADDR_UNDEF || skipped_filters != 0)
+        if (address == HADDR_UNDEF || skipped_filters != 0 || bytes != with_checksum)
             throw Error(ErrorKind::input, where,
                         "must have values with a checksum from row " + std::to_string(row) + " on");
     }
@@ -42,10 +52,10 @@ GrowingDataset::GrowingDataset(const Hdf5Group& group, const std::string& name, 
     : where_(group.where(name)), row_shape_(row_shape), row_size_(product(row_shape))
 {
     const Shape none = with_rows(0, row_shape), unlimited = with_rows(H5S_UNLIMITED, row_shape);
-    const Shape chunk = with_rows(std::max<hsize_t>(1, chunk_values / row_size_), row_shape);
+    const Shape chunk = chunk_of(row_shape);
     const int rank = static_cast<int>(none.size());
     const Hdf5Handle space(H5Screate_simple(rank, none.data(), unlimited.data()), H5Sclose);
-    const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const Hdf5Handle layout = without_times(H5P_DATASET_CREATE);
     H5Pset_chunk(layout.id(), rank, chunk.data());
     H5Pset_fletcher32(layout.id());
     dataset_ = created(H5Dcreate2(group.id(), name.c_str(), stored_type(native), space.id(),
@@ -98,13 +108,36 @@ hsize_t checked_size(const Hdf5Group& group, const std::string& name, const Shap
     return product(shape);
 }
 
-void read_values(const Hdf5Group& group, const std::string& name, hid_t native, void* values)
+namespace {
+
+Hdf5Handle open_as(const Hdf5Group& group, const std::string& name, hid_t native)
 {
-    const Hdf5Handle dataset = open_dataset(group, name);
+    Hdf5Handle dataset = open_dataset(group, name);
     const Hdf5Handle stored(H5Dget_type(dataset.id()), H5Tclose);
     if (H5Tequal(stored.id(), stored_type(native)) <= 0)
         throw Error(ErrorKind::input, group.where(name), "has another type of number");
+    return dataset;
+}
+
+}
+
+void read_values(const Hdf5Group& group, const std::string& name, hid_t native, void* values)
+{
+    const Hdf5Handle dataset = open_as(group, name, native);
     if (H5Dread(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+        throw failed_read(group.where(name));
+}
+
+void read_rows(const Hdf5Group& group, const std::string& name, hid_t native, hsize_t first,
+               const Shape& rows, void* values)
+{
+    const Hdf5Handle dataset = open_as(group, name, native);
+    const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose), memory = data_space(rows);
+    Shape start(rows.size(), 0);
+    start.front() = first;
+    if (H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, rows.data(),
+                            nullptr) < 0 ||
+        H5Dread(dataset.id(), native, memory.id(), space.id(), H5P_DEFAULT, values) < 0)
         throw failed_read(group.where(name));
 }
 

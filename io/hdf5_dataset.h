@@ -4,6 +4,7 @@
 #pragma once
 #include "io/hdf5_group.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,30 @@ Shape dataset_shape(const Hdf5Group& group, const std::string& name);
 hsize_t checked_size(const Hdf5Group& group, const std::string& name, const Shape& shape);
 
 void read_values(const Hdf5Group& group, const std::string& name, hid_t native, void* values);
+
+/// `rows` is the shape of the part to read: some rows from `first` on.
+void read_rows(const Hdf5Group& group, const std::string& name, hid_t native, hsize_t first,
+               const Shape& rows, void* values);
+
+/// Some rows of a dataset of this shape after another, about a megabyte at a time:
+/// use(first, values).
+template <class T, class Use>
+void read_in_parts(const Hdf5Group& group, const std::string& name, const Shape& shape,
+                   const Use& use)
+{
+    checked_size(group, name, shape);
+    constexpr hsize_t part = 131072;  // values
+    const Shape row_shape(shape.begin() + 1, shape.end());
+    const hsize_t width = std::max<hsize_t>(1, product(row_shape));
+    std::vector<T> values;
+    for (hsize_t first = 0; first < shape.front();) {
+        const hsize_t rows = std::min(shape.front() - first, std::max<hsize_t>(1, part / width));
+        values.resize(rows * width);
+        read_rows(group, name, native_type<T>(), first, with_rows(rows, row_shape), values.data());
+        use(first, values);
+        first += rows;
+    }
+}
 
 /// All values of a dataset, which must have this shape and be stored as T.
 template <class T>

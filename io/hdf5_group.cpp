@@ -1,20 +1,23 @@
 #include "io/hdf5_group.h"
 
+#include "io/atomic_file.h"
+
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <utility>
 
 namespace sigmaflow::io {
 namespace {
 
-/// HDF5 must not print, and must not try again at the end of the program to write what could not be
-/// written before.
-void quiet()
+constexpr std::size_t longest_text = std::size_t{64} << 20;
+
+/// HDF5 must not print, must not try again at the end of the program to write what could not be
+/// written before, and must neither follow a file to other files nor load code that it names.
+void prepare()
 {
     H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    H5Lunregister(H5L_TYPE_EXTERNAL);
+    H5PLset_loading_state(0);
 }
 
 Hdf5Handle file_access()
@@ -25,15 +28,6 @@ Hdf5Handle file_access()
     H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
     H5Pset_file_locking(access.id(), true, true);  // not on file systems that have no locks
     return access;
-}
-
-void require_readable(const std::filesystem::path& path)
-{
-    std::FILE* const file = std::fopen(path.c_str(), "rb");
-    if (file == nullptr)
-        throw Error(ErrorKind::missing, path.string(),
-                    std::string("cannot be read: ") + std::strerror(errno));
-    std::fclose(file);
 }
 
 /// An attribute with a single value.
@@ -56,18 +50,16 @@ Hdf5Group::Hdf5Group(Hdf5Handle handle, std::filesystem::path file, std::string 
 
 Hdf5Group Hdf5Group::create_file(const std::filesystem::path& path)
 {
-    quiet();
-    const Hdf5Handle access = file_access();
-    const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id());
+    prepare();
+    const Hdf5Handle access = file_access(), timeless = without_times(H5P_FILE_CREATE);
+    const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, timeless.id(), access.id());
     return Hdf5Group(created(id, H5Fclose, path.string()), path, "");
 }
 
 Hdf5Group Hdf5Group::open_file(const std::filesystem::path& path)
 {
-    quiet();
-    if (std::filesystem::is_directory(path))
-        throw Error(ErrorKind::missing, path.string(), "cannot be read: is a folder");
-    require_readable(path);
+    prepare();
+    first_bytes(path, 1);  // names the reason if the file cannot be read
     const Hdf5Handle access = file_access();
     const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
     return Hdf5Group(opened(id, H5Fclose, path.string()), path, "");
@@ -75,7 +67,8 @@ Hdf5Group Hdf5Group::open_file(const std::filesystem::path& path)
 
 Hdf5Group Hdf5Group::create_group(const std::string& name) const
 {
-    const hid_t group = H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const Hdf5Handle timeless = without_times(H5P_GROUP_CREATE);
+    const hid_t group = H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, timeless.id(), H5P_DEFAULT);
     return Hdf5Group(created(group, H5Gclose, where(name)), file_, name_ + '/' + name);
 }
 
@@ -164,7 +157,12 @@ std::string read_text(const Hdf5Group& group, const std::string& name)
     const Hdf5Handle stored(H5Aget_type(attribute.id()), H5Tclose);
     if (H5Tget_class(stored.id()) != H5T_STRING || H5Tis_variable_str(stored.id()) != 0)
         throw Error(ErrorKind::input, group.where(name), "must be a text of fixed length");
-    std::string text(H5Tget_size(stored.id()), '\0');
+    const std::size_t length = H5Tget_size(stored.id());
+    if (length > longest_text)
+        throw Error(ErrorKind::input, group.where(name),
+                    "must not be longer than " + std::to_string(longest_text) + " bytes, got " +
+                        std::to_string(length));
+    std::string text(length, '\0');
     const Hdf5Handle type = text_type(text.size());
     if (H5Aread(attribute.id(), type.id(), text.data()) < 0) throw failed_read(group.where(name));
     text.resize(text.find_last_not_of('\0') + 1);

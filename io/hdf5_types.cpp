@@ -4,8 +4,7 @@
 
 #include <cstdio>
 #include <cstring>
-#include <functional>
-#include <numeric>
+#include <limits>
 #include <string_view>
 
 namespace sigmaflow::io {
@@ -38,7 +37,11 @@ Failure last_failure()
 
 hsize_t product(const Shape& shape)
 {
-    return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
+    hsize_t result = 1;
+    for (const hsize_t length : shape)
+        if (__builtin_mul_overflow(result, length, &result))
+            return std::numeric_limits<hsize_t>::max();
+    return result;
 }
 
 Shape with_rows(hsize_t rows, const Shape& row_shape)
@@ -68,6 +71,13 @@ hid_t stored_type(hid_t native)
     if (H5Tequal(native, H5T_NATIVE_INT32) > 0) return H5T_STD_I32LE;
     if (H5Tequal(native, H5T_NATIVE_INT64) > 0) return H5T_STD_I64LE;
     return H5T_STD_U8LE;
+}
+
+Hdf5Handle without_times(hid_t property_class)
+{
+    Hdf5Handle list(H5Pcreate(property_class), H5Pclose);
+    H5Pset_obj_track_times(list.id(), false);
+    return list;
 }
 
 Hdf5Handle text_type(std::size_t length)

@@ -17,6 +17,7 @@ namespace sigmaflow::io {
 
 using Shape = std::vector<hsize_t>;
 
+/// The largest number there is instead of an overflow.
 hsize_t product(const Shape& shape);
 /// The shape of a list of rows.
 Shape with_rows(hsize_t rows, const Shape& row_shape);
@@ -36,6 +37,8 @@ hid_t native_type()
 }
 /// The same on disk.
 hid_t stored_type(hid_t native);
+/// A property list by which no time is stored: the same numbers make the same file.
+Hdf5Handle without_times(hid_t property_class);
 /// Texts of `length` bytes, in memory and on disk.
 Hdf5Handle text_type(std::size_t length);
 

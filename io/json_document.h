@@ -6,9 +6,11 @@
 // repeated key. An integer may be written as 1000, 1000.0 or 1e3 (JSON Schema counts all three as
 // integers).
 //
-// Refused while reading: files above 64 MiB, folders, devices and pipes (never opened for reading),
-// nesting deeper than 64, byte-order marks, NUL bytes, bad UTF-8, comments, repeated keys, anything
-// after the value, numbers beyond double precision.
+// Refused while reading: files above 32 MiB, words, numbers and texts above 1 MiB, more values than
+// 128 MiB of memory hold (with the text; 2 million in one list, a state of 45 000 particles),
+// folders, devices and pipes (never opened for reading), nesting deeper than 64, byte-order marks,
+// NUL bytes, bad UTF-8, comments, repeated keys, anything after the value, numbers beyond double
+// precision.
 //
 // Errors: Error(missing) for a file that cannot be read, Error(input) for everything in it, e.g.
 //   quickstart.json:14:17: /steps/2/stress: must be > 0 [sigma0], got -1

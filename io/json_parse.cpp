@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <unordered_set>
+#include <optional>
+#include <set>
 
 namespace sigmaflow::io {
 
@@ -76,7 +77,7 @@ namespace {
 /// the parser tells what it has read but not where it began.
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 public:
-    explicit TreeBuilder(JsonTree& tree) : tree_(tree) {}
+    explicit TreeBuilder(JsonTree& tree) : tree_(tree), memory_(tree.text.size()) {}
 
     bool null() override { return add(std::monostate{}); }
     bool boolean(bool value) override { return add(value); }
@@ -88,6 +89,7 @@ public:
     bool number_float(number_float_t value, const string_t&) override { return add(value); }
     bool string(string_t& value) override
     {
+        take_memory(allocation + sizeof value + value.size());
         return add(std::make_unique<std::string>(std::move(value)));
     }
     bool binary(binary_t&) override { return false; }
@@ -102,6 +104,8 @@ public:
         const std::size_t offset = next_token();
         Level& level = levels_.back();
         auto& object = *std::get<std::unique_ptr<JsonValue::Object>>(level.value->data);
+        take_memory(2 * sizeof(JsonMember) + name.size() + set_entry + name.size());
+        level.set_memory += set_entry + name.size();
         if (!level.keys.insert(name).second) {
             const auto first = std::find_if(object.begin(), object.end(),
                                             [&](const auto& m) { return m.key == name; });
@@ -122,9 +126,13 @@ public:
     }
 
 private:
+    static constexpr std::size_t allocation = 16;  // what one costs beyond its bytes
+    static constexpr std::size_t set_entry = 80;
+
     struct Level {
         JsonValue* value;
-        std::unordered_set<std::string> keys;  // of an object
+        std::set<std::string> keys;  // of an object
+        std::size_t set_memory = 0;  // of these
     };
 
     Error error(std::size_t offset, const std::string& pointer, const std::string& problem) const
@@ -145,13 +153,28 @@ private:
         return begin;
     }
 
+    /// Counts what the tree needs. A list that grows is held up to twice.
+    void take_memory(std::size_t bytes)
+    {
+        memory_ += bytes;
+        if (memory_ > largest_json_tree)
+            throw error(cursor_, pointer(),
+                        "too many values: they must not need more than " +
+                            std::to_string(largest_json_tree >> 20) + " MiB of memory");
+    }
+
+    template <class List>
+    void give_back_growth(List& list)
+    {
+        list.shrink_to_fit();
+        memory_ -= list.size() * sizeof(typename List::value_type);
+    }
+
     template <class Data>
     JsonValue* place(Data&& data)
     {
         const std::size_t offset = next_token();
-        if (++count_ > most_json_values)
-            throw error(offset, pointer(),
-                        "more than " + std::to_string(most_json_values) + " values in one file");
+        take_memory(2 * sizeof(JsonValue));
         JsonValue value{static_cast<std::uint32_t>(offset), std::forward<Data>(data)};
         JsonValue* target = &tree_.root;
         if (!levels_.empty()) {
@@ -175,8 +198,9 @@ private:
     template <class Data>
     bool open(Data&& data)
     {
+        take_memory(2 * allocation + sizeof(JsonValue::Array));
         JsonValue* value = place(std::forward<Data>(data));
-        levels_.push_back({value, {}});
+        levels_.push_back({value, {}, 0});
         if (levels_.size() > deepest_json)
             throw error(value->offset, "", "nested deeper than " + std::to_string(deepest_json));
         return true;
@@ -185,6 +209,12 @@ private:
     bool close()
     {
         next_token();
+        auto& data = levels_.back().value->data;
+        if (auto* array = std::get_if<std::unique_ptr<JsonValue::Array>>(&data))
+            give_back_growth(**array);
+        else
+            give_back_growth(*std::get<std::unique_ptr<JsonValue::Object>>(data));
+        memory_ -= levels_.back().set_memory;
         levels_.pop_back();
         return true;
     }
@@ -255,8 +285,25 @@ private:
 
     JsonTree& tree_;
     std::vector<Level> levels_;
-    std::size_t cursor_ = 0, count_ = 0;
+    std::size_t cursor_ = 0;
+    std::size_t memory_;
 };
+
+/// Begin of a token that is too long, with the white space before it. The parser copies it more
+/// than once before it can be refused.
+std::optional<std::size_t> too_long_token(const std::string& text)
+{
+    for (std::size_t begin = 0; begin < text.size();) {
+        std::size_t end = begin;
+        while (end < text.size() && is_space(text[end])) ++end;
+        if (end - begin > longest_json_token) return begin;
+        const std::size_t token = end;
+        end = json_token_end(text, token);
+        if (end - token > longest_json_token) return token;
+        begin = end;
+    }
+    return std::nullopt;
+}
 
 }
 
@@ -265,7 +312,8 @@ void parse_json(JsonTree& tree)
     const auto refuse = [&](std::size_t offset, const std::string& problem) {
         throw Error(ErrorKind::input, json_location(tree, offset), problem);
     };
-    if (tree.text.size() > largest_json_file) refuse(0, "larger than 64 MiB");
+    if (tree.text.size() > largest_json_file)
+        refuse(0, "must not be larger than " + std::to_string(largest_json_file) + " bytes");
     if (tree.text.starts_with("\xEF\xBB\xBF"))
         refuse(0, "begins with a byte-order mark; save as UTF-8 without one");
     if (tree.text.starts_with("\xFF\xFE") || tree.text.starts_with("\xFE\xFF"))
@@ -274,6 +322,10 @@ void parse_json(JsonTree& tree)
     if (const std::size_t nul = tree.text.find('\0'); nul != std::string::npos)
         refuse(nul, "contains a NUL byte");
     if (tree.text.find_first_not_of(" \t\r\n") == std::string::npos) refuse(0, "is empty");
+
+    if (const auto offset = too_long_token(tree.text))
+        refuse(*offset,
+               "must not have more than 1 MiB in one text, number or word, or between two");
 
     TreeBuilder builder(tree);
     nlohmann::json::sax_parse(tree.text, &builder, nlohmann::json::input_format_t::json,

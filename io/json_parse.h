@@ -53,9 +53,11 @@ struct JsonTree {
     JsonValue root;
 };
 
-inline constexpr std::size_t largest_json_file = std::size_t{64} << 20;  // bytes
+// A hostile text of some bytes per value needs fifty times its size as a tree: both are limited.
+inline constexpr std::size_t largest_json_file = std::size_t{32} << 20;   // bytes
+inline constexpr std::size_t largest_json_tree = std::size_t{128} << 20;  // bytes, text included
+inline constexpr std::size_t longest_json_token = std::size_t{1} << 20;   // bytes
 inline constexpr int deepest_json = 64;
-inline constexpr std::size_t most_json_values = 10'000'000;
 
 /// Fills tree.root from tree.text. Errors: input.
 void parse_json(JsonTree& tree);

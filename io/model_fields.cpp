@@ -5,7 +5,7 @@ namespace sigmaflow::io {
 void describe(Fields& f, Model& m)
 {
     // clang-format off
-    f("lubrication_delta", m.lubrication_delta, above_to(0, 1), "-",
+    f("lubrication_delta", m.lubrication_delta, between(1e-9, 1), "-",
       "regularisation delta of the reduced gap xi: the resistance grows as 1/(xi + delta)");
     f("lubrication_range", m.lubrication_range, above_to(0, 10), "xi",
       "pairs with a reduced gap below it resist each other's motion");
@@ -13,24 +13,24 @@ void describe(Fields& f, Model& m)
       Words<ContactHydrodynamics>{{"lubrication", ContactHydrodynamics::lubrication},
                                   {"dashpot", ContactHydrodynamics::dashpot}},
       "touching pairs keep their full lubrication block, or only a dashpot");
-    f("contact_relaxation_time", m.contact_relaxation_time, at_least(0), "1/rate0",
+    f("contact_relaxation_time", m.contact_relaxation_time, between(0, 1e9), "1/rate0",
       "tau: touching pairs resist with 4 kn tau; 0: with 1/delta");
-    f("normal_stiffness", m.normal_stiffness, at_least(0), "F*/a", "spring constant kn of a contact");
-    f("tangential_stiffness", m.tangential_stiffness, at_least(0), "F*/a",
+    f("normal_stiffness", m.normal_stiffness, between(0, 1e9), "F*/a", "spring constant kn of a contact");
+    f("tangential_stiffness", m.tangential_stiffness, between(0, 1e9), "F*/a",
       "tangential spring constant kt of a contact");
     f("stiffness_scale", m.stiffness_scale,
       Words<StiffnessScale>{{"stress", StiffnessScale::stress}, {"fixed", StiffnessScale::fixed}},
       "stress: spring constants times sigma/sigma0 (needs an imposed stress); fixed: as given");
-    f("friction_static", m.friction_static, at_least(0), "-",
+    f("friction_static", m.friction_static, between(0, 1e6), "-",
       "friction coefficient of sticking contacts; 0: frictionless");
-    f("friction_dynamic", m.friction_dynamic, at_least(0), "-",
+    f("friction_dynamic", m.friction_dynamic, between(0, 1e6), "-",
       "friction coefficient of sliding contacts, at most friction_static");
-    f("critical_load", m.critical_load, at_least(0), "F*",
+    f("critical_load", m.critical_load, between(0, 1e9), "F*",
       "friction acts on the part of the normal force above this load");
-    f("rolling_stiffness", m.rolling_stiffness, at_least(0), "F*/a", "spring constant of rolling");
-    f("rolling_friction", m.rolling_friction, at_least(0), "-", "friction coefficient of rolling");
-    f("repulsion", m.repulsion, at_least(0), "F*", "strength of the repulsion; 0: none");
-    f("debye_length", m.debye_length, above(0), "a", "decay length of the repulsion");
+    f("rolling_stiffness", m.rolling_stiffness, between(0, 1e9), "F*/a", "spring constant of rolling");
+    f("rolling_friction", m.rolling_friction, between(0, 1e6), "-", "friction coefficient of rolling");
+    f("repulsion", m.repulsion, between(0, 1e9), "F*", "strength of the repulsion; 0: none");
+    f("debye_length", m.debye_length, between(1e-6, 1e3), "a", "decay length of the repulsion");
     f("repulsion_amplitude", m.repulsion_amplitude,
       Words<RepulsionAmplitude>{{"reduced_radius", RepulsionAmplitude::reduced_radius},
                                 {"derjaguin", RepulsionAmplitude::derjaguin},
@@ -39,7 +39,7 @@ void describe(Fields& f, Model& m)
     f("repulsion_range", m.repulsion_range, above_to(0, 10), "xi",
       "pairs with a reduced gap below it repel each other");
     f("einstein", m.einstein, "solvent stress with the factor 1 + 5/2 phi");
-    f("drag_factor", m.drag_factor, above(0), "-", "multiplies the Stokes drag of every particle");
+    f("drag_factor", m.drag_factor, between(1e-6, 1e6), "-", "multiplies the Stokes drag of every particle");
     f("background_drag", m.background_drag,
       "drag relative to the ambient flow; false: the limit of vanishing drag");
     // clang-format on
@@ -61,8 +61,7 @@ void check_model(const Model& model, const JsonNode& object)
         throw object.error_at_key(
             object.has("friction_dynamic") ? "friction_dynamic" : "friction_static",
             "friction_dynamic must be <= friction_static, got " +
-                number_text(model.friction_dynamic) + " and " +
-                number_text(model.friction_static));
+                number_text(model.friction_dynamic) + " and " + number_text(model.friction_static));
 }
 
 Control checked_control(const std::optional<double>& stress, const std::optional<double>& rate,
@@ -89,8 +88,8 @@ Control read_control(const JsonNode& object, const Model& model)
 {
     std::optional<double> stress, rate;
     Fields f;
-    f("stress", stress, any_number(), "sigma0", "imposed shear stress");
-    f("rate", rate, any_number(), "rate0", "imposed shear rate");
+    f("stress", stress, between(-1e9, 1e9), "sigma0", "imposed shear stress");
+    f("rate", rate, between(-1e9, 1e9), "rate0", "imposed shear rate");
     read_fields(object, f.list());
     return checked_control(stress, rate, model, object);
 }

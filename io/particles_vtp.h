@@ -35,6 +35,13 @@ vtkSmartPointer<vtkPolyData> box_polydata(const Box& box);
 void write_vtp(const std::filesystem::path& path, vtkPolyData* data);
 vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path);
 
+struct VtpSummary {
+    std::size_t points = 0, cells = 0, arrays = 0;
+};
+
+/// read_vtp, and every point must be finite and every array as long as the list that it belongs to.
+VtpSummary check_vtp(const std::filesystem::path& path);
+
 /// One entry of a ParaView collection; file is relative to the collection.
 struct SeriesEntry {
     double time;

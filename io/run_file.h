@@ -53,4 +53,12 @@ struct StoredRun {
 /// Reads a finished run back; every number bitwise as it was written.
 StoredRun read_run(const std::filesystem::path& path);
 
+struct RunSummary {
+    std::size_t samples = 0, frames = 0, particles = 0;
+};
+
+/// Checks all that read_run checks, and that boxes and positions are finite, without taking the run
+/// into memory: about a megabyte, or one frame of one array, at a time.
+RunSummary check_run(const std::filesystem::path& path);
+
 }

@@ -75,12 +75,6 @@ void SeriesWriter::append(const Sample& sample)
     file_.write(row(text) + '\n');
 }
 
-void SeriesWriter::finish()
-{
-    file_.sync();
-    file_.close();
-}
-
 std::vector<Sample> read_series(const std::filesystem::path& path)
 {
     const std::string content = read_file(path);

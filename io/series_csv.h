@@ -4,7 +4,7 @@
 // file, no_space; reading: missing, input (with the line number).
 #pragma once
 #include "engine/frame.h"
-#include "io/atomic_file.h"
+#include "io/appended_file.h"
 
 #include <filesystem>
 #include <vector>
@@ -14,12 +14,16 @@ namespace sigmaflow::io {
 class SeriesWriter {
 public:
     explicit SeriesWriter(const std::filesystem::path& path);
+    /// Goes on behind the mark; rows after it are lost.
+    SeriesWriter(const std::filesystem::path& path, const Mark& mark) : file_(path, mark) {}
     void append(const Sample& sample);
+    /// Brings all rows to the disk.
+    Mark mark() { return file_.mark(); }
     /// Brings the file to the disk and closes it.
-    void finish();
+    void finish() { file_.finish(); }
 
 private:
-    OutputFile file_;
+    AppendedFile file_;
 };
 
 /// Reads a file of SeriesWriter; the columns must be those of sample_fields().

@@ -3,12 +3,17 @@
 #include "io/particles_vtp.h"
 
 #include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkExecutive.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <cctype>
+#include <cmath>
 #include <string>
 
 namespace sigmaflow::io {
@@ -71,6 +76,18 @@ void write_vtp(const std::filesystem::path& path, vtkPolyData* data)
     write_file(path, writer->GetOutputString());
 }
 
+namespace {
+
+/// XML can define abbreviations that grow without end or name other files; VTK writes none.
+std::string without_definitions(std::string text, const std::filesystem::path& path)
+{
+    if (text.find("<!DOCTYPE") != std::string::npos || text.find("<!ENTITY") != std::string::npos)
+        throw Error(ErrorKind::input, path.string(), "must not define XML entities");
+    return text;
+}
+
+}
+
 vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path)
 {
     std::string message;
@@ -81,12 +98,69 @@ vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path)
     reader->SetParserErrorObserver(command);
     reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, command);
     reader->ReadFromInputStringOn();
-    reader->SetInputString(read_file(path));
+    reader->SetInputString(without_definitions(read_file(path), path));
     reader->Update();
     vtkSmartPointer<vtkPolyData> data = reader->GetOutput();
     if (!message.empty() || reader->GetErrorCode() != 0)
         throw Error(ErrorKind::input, path.string(), "must be VTK polydata: " + essence(message));
     return data;
+}
+
+namespace {
+
+/// Number of arrays; each must have one entry for each of `count` points or cells.
+std::size_t check_arrays(vtkDataSetAttributes* data, vtkIdType count, const std::string& where)
+{
+    for (int k = 0; k < data->GetNumberOfArrays(); ++k) {
+        vtkAbstractArray* array = data->GetAbstractArray(k);
+        if (array->GetNumberOfTuples() != count)
+            throw Error(ErrorKind::input, where + ": " + (array->GetName() ? array->GetName() : ""),
+                        "must have " + std::to_string(count) + " entries, got " +
+                            std::to_string(array->GetNumberOfTuples()));
+    }
+    return static_cast<std::size_t>(data->GetNumberOfArrays());
+}
+
+/// Every cell must have points that exist.
+void check_cells(vtkPolyData* data, const std::string& where)
+{
+    vtkNew<vtkIdList> ids;
+    for (vtkCellArray* cells :
+         {data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips()}) {
+        if (cells == nullptr || !cells->IsValid())
+            throw Error(ErrorKind::input, where, "offsets must ascend within the connectivity");
+        for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell) {
+            cells->GetCellAtId(cell, ids);
+            for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
+                if (ids->GetId(k) < 0 || ids->GetId(k) >= data->GetNumberOfPoints())
+                    throw Error(ErrorKind::input, where,
+                                "must be points >= 0 and < " +
+                                    std::to_string(data->GetNumberOfPoints()) + ", got " +
+                                    std::to_string(ids->GetId(k)));
+        }
+    }
+}
+
+}
+
+VtpSummary check_vtp(const std::filesystem::path& path)
+{
+    const vtkSmartPointer<vtkPolyData> data = read_vtp(path);
+    for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k) {
+        const double* point = data->GetPoint(k);
+        if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
+            throw Error(ErrorKind::input, path.string() + ": Points",
+                        "must be finite, point " + std::to_string(k) + " is not");
+    }
+    check_cells(data, path.string() + ": connectivity");
+    VtpSummary summary;
+    summary.points = static_cast<std::size_t>(data->GetNumberOfPoints());
+    summary.cells = static_cast<std::size_t>(data->GetNumberOfCells());
+    summary.arrays =
+        check_arrays(data->GetPointData(), data->GetNumberOfPoints(),
+                     path.string() + ": PointData") +
+        check_arrays(data->GetCellData(), data->GetNumberOfCells(), path.string() + ": CellData");
+    return summary;
 }
 
 void write_pvd(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries)

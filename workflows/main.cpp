@@ -3,11 +3,14 @@
 #include "io/case_file.h"
 #include "workflows/blas_kernel.h"
 #include "workflows/help.h"
+#include "workflows/interruption.h"
 #include "workflows/manifest.h"
 #include "workflows/runner.h"
+#include "workflows/validate.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <optional>
 
 namespace {
 
@@ -19,15 +22,43 @@ constexpr const char* examples = R"(examples:
   sigmaflow steps                                     all steps, the suspension and the model
   sigmaflow steps shear                               the parameters of one step
   sigmaflow evaluate case.json                        velocities and stress of one configuration
+  sigmaflow validate my_flow.json out/a/shear/run.h5  what files are, or what is wrong with them
 
-exit codes: 0 complete, 64 wrong command line, 65 invalid input, 66 input missing, 69 pictures could
-not be drawn, 70 numerical failure, 71 internal error, 73 cannot write, 74 disk full, 75 folder in use)";
+a run that was interrupted or killed goes on with the same command
+
+exit codes: 0 complete, 3 interrupted (the same command goes on), 64 wrong command line, 65 invalid
+input, 66 input missing, 69 pictures could not be drawn, 70 numerical failure, 71 internal error, 73 cannot write, 74 disk full, 75 folder in use)";
 
 /// Prints results; a full disk or a closed pipe must not pass for success.
 void print(const std::string& text)
 {
     std::cout << text << std::flush;
     if (!std::cout) throw Error(ErrorKind::file, "standard output", "cannot be written");
+}
+
+int complain(const std::string& message, ErrorKind kind)
+{
+    const char* what = kind == ErrorKind::interrupted ? "interrupted: " : "error: ";
+    std::cerr << "sigmaflow: " << what << message << "\n";
+    return static_cast<int>(kind);
+}
+
+/// One line for each good file; each bad one is an error, the first of which is thrown at the end.
+void validate_files(const std::vector<std::string>& files)
+{
+    std::optional<Error> first;
+    for (const std::string& file : files) {
+        try {
+            print(workflows::validate_file(file) + "\n");
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::missing) throw;
+            if (first)
+                complain(error.what(), error.kind());
+            else
+                first = error;
+        }
+    }
+    if (first) throw *first;
 }
 
 void run_command(int argc, char** argv)
@@ -38,13 +69,23 @@ void run_command(int argc, char** argv)
     app.require_subcommand(0, 1);
 
     workflows::RunOptions options;
-    std::string out, case_file, step;
+    std::string out, case_file, step, wall_time;
+    std::vector<std::string> files;
     CLI::App* run = app.add_subcommand("run", "run a workflow");
     run->add_option("WORKFLOW.json", options.workflow, "the workflow")->required();
     run->add_option(
         "--out", out,
-        "folder for the results, default out/<name of the workflow file>. An earlier run "
-        "of the same workflow in it is replaced, any other folder must be empty");
+        "folder for the results, default out/<name of the workflow file>. An earlier run of the "
+        "same workflow in it goes on where it ended, any other folder must be empty");
+    run->add_flag("--force", options.force,
+                  "run all steps anew, even if the folder has their results or a checkpoint");
+    run->add_option("--checkpoint-interval", options.checkpoint_interval,
+                    "seconds between two checkpoints; 0: after every step")
+        ->check(CLI::Range(0., 1e6))
+        ->default_val(30);
+    run->add_option("--max-walltime", wall_time,
+                    "store a checkpoint and end with exit code 3 in good time before, e.g. 90m, 2h "
+                    "or 1-12:00:00");
     run->add_option("--threads", options.threads,
                     "threads of each evaluation, worth it from some thousand particles on; results "
                     "do not depend on it")
@@ -53,6 +94,9 @@ void run_command(int argc, char** argv)
     run->add_flag("-q,--quiet", options.quiet, "no progress, only results and errors");
     CLI::App* evaluate = app.add_subcommand("evaluate", "evaluate one configuration, print JSON");
     evaluate->add_option("CASE.json", case_file, "the configuration")->required();
+    CLI::App* validate = app.add_subcommand(
+        "validate", "check workflows, cases, runs (.h5) and VTK files, compute nothing");
+    validate->add_option("FILE", files, "the files")->required();
     CLI::App* steps = app.add_subcommand("steps", "explain steps and parameters");
     steps->add_option("STEP", step, "a step; default: all");
     try {
@@ -64,21 +108,26 @@ void run_command(int argc, char** argv)
 
     if (run->parsed()) {
         if (run->count("--out")) options.out = out;
+        if (run->count("--max-walltime")) {
+            options.wall_time = workflows::seconds_of(wall_time);
+            if (!options.wall_time)
+                throw Error(
+                    ErrorKind::usage, "--max-walltime",
+                    "must be a time as 5400, 90m, 2h or D-HH:MM:SS, got \"" + wall_time + "\"");
+        }
+        if (options.out && options.out->empty())
+            throw Error(ErrorKind::usage, "--out", "must name a folder, got \"\"");
         workflows::run_workflow(options, std::cout);
         print("");
     } else if (evaluate->parsed()) {
         print(io::evaluate_case(case_file));
+    } else if (validate->parsed()) {
+        validate_files(files);
     } else if (steps->parsed()) {
         print(workflows::steps_help(step));
     } else {
         print(app.help());
     }
-}
-
-int complain(const std::string& message, ErrorKind kind)
-{
-    std::cerr << "sigmaflow: error: " << message << "\n";
-    return static_cast<int>(kind);
 }
 
 }

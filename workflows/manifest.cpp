@@ -67,6 +67,16 @@ Json library_versions()
             {"cli11", CLI11_VERSION}};
 }
 
+std::string arithmetic()
+{
+    std::string instructions = "x86-64";
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("x86-64-v3")) instructions = "x86-64-v3";
+    if (__builtin_cpu_supports("x86-64-v4")) instructions = "x86-64-v4";
+#endif
+    return instructions + ", " + blas_kernel();
+}
+
 std::string utc_now()
 {
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -90,6 +100,7 @@ Manifest::Manifest(const Workflow& workflow, const std::filesystem::path& workfl
     content_["processor"] = processor();
     content_["cores"] = std::thread::hardware_concurrency();
     content_["threads"] = threads;
+    content_["arithmetic"] = arithmetic();
     content_["compiler"] = SIGMAFLOW_COMPILER;
     content_["libraries"] = library_versions();
     content_["workflow"] = workflow.resolved();
@@ -97,20 +108,21 @@ Manifest::Manifest(const Workflow& workflow, const std::filesystem::path& workfl
     content_["files"] = Json::array();
 }
 
-void Manifest::add_step(const Step& step, double wall_seconds)
+void Manifest::add_step(const StepRecord& record)
 {
+    const StepIdentity& step = record.identity;
     content_["steps"].push_back(
-        {{"name", step.name}, {"step", step.kind}, {"wall_seconds", wall_seconds}});
+        {{"name", step.name}, {"step", step.kind}, {"wall_seconds", record.wall_seconds}});
+    for (const ResultFile& file : record.files)
+        content_["files"].push_back(
+            {{"name", file.name}, {"size", file.size}, {"xxh3", io::hexadecimal(file.digest)}});
 }
 
-void Manifest::write(RunFolder& folder, const std::string& status, const std::string& error)
+void Manifest::write(const RunFolder& folder, const std::string& status, const std::string& error)
 {
     content_["status"] = status;
     if (status != "running") content_["ended"] = utc_now();
     if (!error.empty()) content_["error"] = error;
-    content_["files"] = Json::array();
-    for (const RunFolder::Entry& entry : folder.files())
-        content_["files"].push_back({{"name", entry.name}, {"size", entry.size}});
     // paths and host names need not be UTF-8
     io::write_file(folder.path() / manifest_name,
                    content_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -1,7 +1,6 @@
 // workflows/manifest.h -- manifest.json: what was run, by what, where, and which files it made.
 #pragma once
-#include "workflows/run_folder.h"
-#include "workflows/workflow.h"
+#include "workflows/step_record.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +13,9 @@ std::string version();
 /// {"eigen": "3.4.0", "vtk": "9.1.0", ...}
 nlohmann::ordered_json library_versions();
 
+/// What the last bits of results depend on: the vector instructions in use and the kernel of BLAS.
+std::string arithmetic();
+
 /// Now in ISO 8601, UTC, e.g. 2015-05-26T09:30:00Z.
 std::string utc_now();
 
@@ -21,9 +23,10 @@ class Manifest {
 public:
     Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file, int threads);
 
-    void add_step(const Step& step, double wall_seconds);
-    /// Status: running, complete, pictures missing, failed. Errors: file, no_space.
-    void write(RunFolder& folder, const std::string& status, const std::string& error = "");
+    /// A finished step with its files.
+    void add_step(const StepRecord& record);
+    /// Status: running, complete, pictures missing, interrupted, failed. Errors: file, no_space.
+    void write(const RunFolder& folder, const std::string& status, const std::string& error = "");
 
 private:
     nlohmann::ordered_json content_;

@@ -53,6 +53,7 @@ void Progress::begin(const std::string& task)
     task_ = task;
     started_ = shown_ = Clock::now();
     shown_fraction_ = 0;
+    first_fraction_ = -1;
 }
 
 void Progress::update(double fraction, const std::string& details)
@@ -61,10 +62,11 @@ void Progress::update(double fraction, const std::string& details)
     fraction = std::isfinite(fraction) ? std::clamp(fraction, 0., 1.) : 0;
     const Clock::time_point now = Clock::now();
     const double since = seconds_between(shown_, now), elapsed = seconds_between(started_, now);
-    const std::string left =
-        fraction > 0.01 && elapsed > 1
-            ? ", " + duration_text(elapsed * (1 - fraction) / fraction) + " left"
-            : "";
+    if (first_fraction_ < 0) first_fraction_ = fraction;
+    const double gained = fraction - first_fraction_;
+    const std::string left = gained > 0.01 && elapsed > 1
+                                 ? ", " + duration_text(elapsed * (1 - fraction) / gained) + " left"
+                                 : "";
     if (style_ == Style::lines) {
         const bool due = since >= 10 || (since >= 1 && fraction >= shown_fraction_ + 0.1);
         if (!due) return;
@@ -95,6 +97,12 @@ void Progress::note(const std::string& text)
 {
     clear();
     if (style_ != Style::quiet) print(text + "\n");
+}
+
+void Progress::warn(const std::string& text)
+{
+    clear();
+    print("sigmaflow: warning: " + text + "\n");
 }
 
 void Progress::clear()

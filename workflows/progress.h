@@ -24,6 +24,8 @@ public:
     void end(const std::string& result);
     /// A line that stays.
     void note(const std::string& text);
+    /// A line that stays, even when quiet.
+    void warn(const std::string& text);
     /// Forgets a half-drawn bar, before an error message.
     void clear();
 
@@ -34,6 +36,7 @@ private:
     std::string task_;
     Clock::time_point started_, shown_;
     double shown_fraction_ = 0;
+    double first_fraction_ = -1;  // a run that goes on does not begin at 0; -1: not known yet
     bool bar_drawn_ = false;
 };
 

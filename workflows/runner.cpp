@@ -3,6 +3,7 @@
 #include "io/atomic_file.h"
 #include "workflows/manifest.h"
 #include "workflows/report.h"
+#include "workflows/resumption.h"
 #include "workflows/workflow.h"
 
 #include <chrono>
@@ -22,54 +23,111 @@ io::Provenance provenance_of(const Workflow& workflow)
             {"libraries", library_versions().dump()}};
 }
 
-/// Runs one step; what it found out goes to the summary, how long it took to the manifest.
-void run_step(const Step& step, std::size_t number, std::size_t count, Context& context,
-              Json& summary, Manifest& manifest)
+/// What a finished step hands on, taken from its record.
+void hand_on(StepRecord record, Context& context)
 {
-    context.step_name = step.name;
+    if (record.state) context.state = std::move(*record.state);
+    if (record.run) {
+        record.run->file = context.folder.path() / record.identity.name / run_name;
+        context.runs.push_back(std::move(*record.run));
+    }
+    context.last_run = record.last_run;
+    context.results = Json::parse(record.results);
+}
+
+/// Runs one step and makes its record, unless a picture is missing: then it runs again next time.
+StepRecord run_step(const Step& step, const StepIdentity& identity, Context& context)
+{
+    const std::size_t runs = context.runs.size(), problems = context.problems.size();
     context.results = Json::object();
-    std::string title = "[";
-    title += std::to_string(number) + "/" + std::to_string(count) + "] " + step.name;
-    context.progress.begin(title);
     const auto start = std::chrono::steady_clock::now();
     try {
         step.run(context);
     } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) throw;
         throw error.within(step.pointer + " (" + step.name + ")");
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    Json entry = {{"step", step.kind}};
-    entry.update(context.results);
-    summary["steps"][step.name] = std::move(entry);
-    manifest.add_step(step, taken.count());
-    context.progress.end(one_line(summary["steps"][step.name]));
-    io::write_file(context.folder.file(summary_name), summary.dump(2) + "\n");
-    manifest.write(context.folder, "running");
+    StepRecord record{.identity = identity,
+                      .results = context.results.dump(),
+                      .wall_seconds = taken.count(),
+                      .files = context.folder.take_results(),
+                      .state = {},
+                      .run = {},
+                      .last_run = context.last_run};
+    if (step.changes_state) record.state = context.state;
+    if (context.runs.size() > runs) record.run = context.runs.back();
+    if (context.problems.size() == problems) write_record(context.folder, record);
+    remove_checkpoints(context.folder);
+    context.folder.remove(step.name + "/" + journal_name);  // only now: checkpoints need it
+    return record;
 }
 
-void run_steps(const Workflow& workflow, Context& context, Json& summary, Manifest& manifest)
+/// All steps; what they found out goes to the summary, how long they took to the manifest.
+void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json& summary,
+               Manifest& manifest)
 {
-    std::size_t number = 0;
-    for (const Step& step : workflow.steps)
-        run_step(step, ++number, workflow.steps.size(), context, summary, manifest);
+    const std::size_t count = workflow.steps.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const Step& step = workflow.steps[k];
+        PlannedStep& planned = plan.steps[k];
+        context.step_name = step.name;
+        std::string title = "[";
+        title += std::to_string(k + 1) + "/" + std::to_string(count) + "] " + step.name;
+        context.progress.begin(title);
+        const bool done = planned.record.has_value();
+        if (done) {
+            manifest.add_step(*planned.record);
+            hand_on(std::move(*planned.record), context);
+            context.folder.remove(step.name + "/" + journal_name);
+        } else {
+            const bool goes_on =
+                plan.checkpoint && plan.checkpoint->step.name == planned.identity.name;
+            if (goes_on)
+                context.progress.note(title + ": goes on from strain " +
+                                      rounded_text(plan.checkpoint->strain) + ", stored " +
+                                      plan.checkpoint->written);
+            else if (!planned.reason.empty())
+                context.progress.note(title + ": again, " + planned.reason);
+            context.keeper.stop_if_asked();
+            context.keeper.begin(planned.identity,
+                                 goes_on ? std::move(plan.checkpoint) : std::nullopt);
+            manifest.add_step(run_step(step, planned.identity, context));
+        }
+        Json entry = {{"step", step.kind}};
+        entry.update(context.results);
+        summary["steps"][step.name] = std::move(entry);
+        const std::string line = one_line(summary["steps"][step.name]);
+        context.progress.end(done ? line + ", from an earlier run" : line);
+        if (!done) {
+            io::write_file(context.folder.path() / summary_name, summary.dump(2) + "\n");
+            manifest.write(context.folder, "running");
+        }
+    }
+    io::write_file(context.folder.path() / summary_name, summary.dump(2) + "\n");
 }
 
 }
 
 void run_workflow(const RunOptions& options, std::ostream& results)
 {
+    const Interruption interruption(options.wall_time);
     const Workflow workflow = read_workflow(options.workflow);
     RunFolder folder(options.out.value_or(std::filesystem::path("out") / options.workflow.stem()),
                      workflow.name);
+    Resumption plan = plan_resumption(workflow, folder, options.force);
+    remove_unused(plan, folder);
     Progress progress = Progress::for_stderr(options.quiet);
     Manifest manifest(workflow, options.workflow, options.threads);
     manifest.write(folder, "running");
-    progress.note("writing to " + folder.path().string() +
-                  (folder.replaces_earlier_run() ? ", in place of an earlier run" : ""));
+    progress.note("writing to " + folder.path().string());
+    for (const std::string& warning : plan.warnings) progress.warn(warning);
+    Keeper keeper(folder, interruption, options.checkpoint_interval);
     Context context{.suspension = *workflow.suspension,
                     .provenance = provenance_of(workflow),
                     .folder = folder,
                     .progress = progress,
+                    .keeper = keeper,
                     .threads = options.threads,
                     .state = {},
                     .runs = {},
@@ -79,13 +137,15 @@ void run_workflow(const RunOptions& options, std::ostream& results)
                     .problems = {}};
     Json summary = {{"workflow", workflow.name}, {"steps", Json::object()}};
     try {
-        run_steps(workflow, context, summary, manifest);
+        run_steps(workflow, std::move(plan), context, summary, manifest);
         const std::string& first = context.problems.empty() ? "" : context.problems.front();
         manifest.write(folder, context.problems.empty() ? "complete" : "pictures missing", first);
     } catch (const std::exception& error) {
         progress.clear();
+        const auto* own = dynamic_cast<const Error*>(&error);
+        const bool interrupted = own && own->kind() == ErrorKind::interrupted;
         try {
-            manifest.write(folder, "failed", error.what());
+            manifest.write(folder, interrupted ? "interrupted" : "failed", error.what());
         } catch (const Error&) {  // the first error is the one to report
         }
         throw;

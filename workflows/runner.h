@@ -11,11 +11,15 @@ struct RunOptions {
     std::optional<std::filesystem::path> out;  // default: out/<name of the file>
     bool quiet = false;                        // no progress on stderr
     int threads = 1;                           // results do not depend on it
+    bool force = false;                        // nothing of an earlier run is used
+    double checkpoint_interval = 30;           // [s] >= 0
+    std::optional<double> wall_time;           // the program ends before [s]
 };
 
-/// Runs the workflow and prints a short table of results. manifest.json and summary.json are
-/// written atomically, the summary after every step. Errors: missing, input (before anything is
-/// computed), file, no_space, locked, numerics; rendering after everything else is complete.
+/// Runs the workflow, or what is left of it (workflows/resumption.h), and prints a short table of
+/// results. manifest.json and summary.json are written atomically, the summary after every step.
+/// Errors: missing, input (before anything is computed), file, no_space, locked, numerics,
+/// interrupted; rendering after everything else is complete.
 void run_workflow(const RunOptions& options, std::ostream& results);
 
 }

@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 packages=(g++ cmake make libvtk9-dev libeigen3-dev libsuitesparse-dev libopenblas-serial-dev
-          libhdf5-dev nlohmann-json3-dev libcli11-dev libgtest-dev libegl-dev libpng-dev
+          libhdf5-dev libxxhash-dev nlohmann-json3-dev libcli11-dev libgtest-dev libegl-dev libpng-dev
           libfreetype-dev fonts-dejavu-core fonts-dejavu-extra)
 
 is_installed() {

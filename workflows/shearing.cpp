@@ -1,5 +1,6 @@
 #include "workflows/shearing.h"
 
+#include "engine/memory.h"
 #include "io/model_fields.h"
 
 #include <algorithm>
@@ -35,6 +36,12 @@ public:
         if (!reached(strain, next())) return false;
         while (reached(strain, next())) ++count_;
         return true;
+    }
+
+    template <class Archive>
+    void archive(Archive& a)
+    {
+        a(count_);
     }
 
 private:
@@ -129,9 +136,19 @@ namespace {
 /// Makes the outputs that are due at the strain of the state and says when to stop.
 class Recorder {
 public:
-    Recorder(const ShearingTask& task, const ShearingOutput& output)
-        : task_(task), output_(output), samples_(task.series_interval), frames_(task.frame_interval)
+    Recorder(const ShearingTask& task, RunFiles& files, const std::function<bool()>& enough)
+        : task_(task),
+          files_(files),
+          enough_(enough),
+          samples_(task.series_interval),
+          frames_(task.frame_interval)
     {
+    }
+
+    template <class Archive>
+    void archive(Archive& a)
+    {
+        a(samples_, frames_);
     }
 
     /// The next output, or the end.
@@ -176,18 +193,19 @@ public:
 private:
     void write_sample(const Sample& sample, bool on_grid)
     {
-        output_.sample(sample, on_grid);
+        files_.append(sample, on_grid);
         has_sample_ = true;
-        if (on_grid && output_.enough && output_.enough()) last_ = true;
+        if (on_grid && enough_ && enough_()) last_ = true;
     }
     void write_frame(const State& state, const DetailedEvaluation& detailed)
     {
-        output_.frame(make_frame(state, detailed));
+        files_.append(make_frame(state, detailed));
         has_frame_ = true;
     }
 
     const ShearingTask& task_;
-    const ShearingOutput& output_;
+    RunFiles& files_;
+    const std::function<bool()>& enough_;
     OutputClock samples_, frames_;
     bool last_ = false, arrived_ = false;  // of the state that was recorded last
     bool has_sample_ = false, has_frame_ = false;
@@ -200,42 +218,93 @@ std::optional<JammingMonitor> monitor_of(const Control& control)
     return JammingMonitor(stress->value, {.viscosity = jammed_viscosity});
 }
 
+/// A shearing step on its way.
+struct Voyage {
+    Workspace workspace;
+    Recorder recorder;
+    std::optional<JammingMonitor> monitor;
+    ShearingResult result = {};
+    bool jammed = false;
+
+    template <class Archive>
+    void archive(Archive& a)
+    {
+        a(recorder, result.steps, result.solver, jammed);
+        if (monitor) a(*monitor);
+    }
+};
+
+std::string stored(const State& state, Voyage& voyage)
+{
+    ArchiveWriter a;
+    a(state, voyage);
+    save_memory(state, voyage.workspace, a);
+    return a.bytes();
 }
 
-ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
-                     const ShearingOutput& output, Progress& progress)
+void restore(const std::string& bytes, const Model& model, State& state, Voyage& voyage)
 {
-    state.strain = state.time = 0;
-    Workspace workspace(task.solver);
-    Recorder recorder(task, output);
-    std::optional<JammingMonitor> monitor = monitor_of(task.control);
-    ShearingResult result;
-    bool jammed = false;
-    try {
-        for (;; ++result.steps) {
-            const auto recorded = recorder.record(state, model, workspace);
-            if (recorder.last()) break;
-            if (jammed) {
-                recorder.record_end(state, model, workspace);
-                result.outcome = Outcome::jammed;
-                break;
-            }
-            Evaluation moved =
-                advance(state, model, task.control, task.stepping, {recorder.target(), task.time},
-                        workspace, recorded ? &*recorded : nullptr);
-            result.solver.add(moved.solve);
-            jammed = monitor && monitor->observe(state, moved);
-            progress.update(std::max(state.strain / task.strain, state.time / task.time),
-                            details_text(state, moved.shear_rate));
-            recycle(std::move(moved), workspace);
+    const int particles = state.size();
+    ArchiveReader a(bytes);
+    a(state, voyage);
+    if (state.size() != particles) ArchiveReader::refuse("has another number of particles");
+    restore_memory(state, model, voyage.workspace, a);
+    a.finish();
+}
+
+/// Goes from one output to the next until the end.
+void travel(Context& context, const ShearingTask& task, RunFiles& files, Voyage& voyage)
+{
+    State& state = context.state;
+    const Model& model = context.suspension.model;
+    ShearingResult& result = voyage.result;
+    for (;;) {
+        const auto recorded = voyage.recorder.record(state, model, voyage.workspace);
+        if (voyage.recorder.last()) return;
+        if (voyage.jammed) {
+            voyage.recorder.record_end(state, model, voyage.workspace);
+            result.outcome = Outcome::jammed;
+            return;
         }
+        Evaluation moved = advance(state, model, task.control, task.stepping,
+                                   {voyage.recorder.target(), task.time}, voyage.workspace,
+                                   recorded ? &*recorded : nullptr);
+        ++result.steps;
+        result.solver.add(moved.solve);
+        voyage.jammed = voyage.monitor && voyage.monitor->observe(state, moved);
+        context.progress.update(std::max(state.strain / task.strain, state.time / task.time),
+                                details_text(state, moved.shear_rate));
+        recycle(std::move(moved), voyage.workspace);
+        if (context.keeper.due())
+            context.keeper.keep(state.strain, files.marks(), stored(state, voyage));
+    }
+}
+
+}
+
+ShearingResult shear(Context& context, const ShearingTask& task, RunFiles& files,
+                     const std::function<bool()>& enough)
+{
+    State& state = context.state;
+    Voyage voyage{Workspace(task.solver), Recorder(task, files, enough), monitor_of(task.control)};
+    if (const Checkpoint* saved = context.keeper.saved())
+        restore(saved->run, context.suspension.model, state, voyage);
+    else
+        state.strain = state.time = 0;
+    ShearingResult& result = voyage.result;
+    try {
+        travel(context, task, files, voyage);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::numerics) throw;
-        throw error.within("at strain " + io::number_text(state.strain) + ", step " +
-                           std::to_string(result.steps));
+        const auto dump = files.write_failure(state);
+        const Error located = error.within("at strain " + io::number_text(state.strain) +
+                                           ", step " + std::to_string(result.steps));
+        throw Error(ErrorKind::numerics, located.where(),
+                    located.problem() + "; the state before is in " + dump.string());
     }
-    if (recorder.arrived()) result.outcome = Outcome::flowing;
-    if (monitor && monitor->last_window().duration > 0) result.window = monitor->last_window();
+    if (voyage.recorder.arrived()) result.outcome = Outcome::flowing;
+    if (voyage.monitor && voyage.monitor->last_window().duration > 0)
+        result.window = voyage.monitor->last_window();
     return result;
 }
 

@@ -2,11 +2,13 @@
 //
 // evaluate -> output if one is due -> advance to the next output at the latest. Samples and frames
 // are made exactly at multiples of their strain intervals, the first at strain 0 and the last at
-// the end. The strain and the time of the state count from the beginning of the step.
+// the end. The strain and the time of the state count from the beginning of the step. Between two
+// steps everything that the next one depends on can be stored (workflows/checkpoint.h).
 #pragma once
 #include "engine/evaluation.h"
 #include "engine/jamming.h"
 #include "engine/step.h"
+#include "workflows/run_files.h"
 #include "workflows/step.h"
 
 #include <algorithm>
@@ -50,14 +52,6 @@ struct ShearingParameters {
 enum class Outcome { flowing, jammed, undecided };
 std::string_view outcome_name(Outcome outcome);
 
-struct ShearingOutput {
-    /// `on_grid`: at a multiple of the series interval, unlike the last sample of a run that ran
-    /// out of time.
-    std::function<void(const Sample&, bool on_grid)> sample;
-    std::function<void(const Frame&)> frame;
-    std::function<bool()> enough;  // asked after each sample; true ends the run
-};
-
 /// What the solver needed in the steps; solutions for outputs are not counted.
 struct SolverStatistics {
     double iterations = 0;
@@ -79,9 +73,17 @@ struct ShearingResult {
     std::optional<JammingWindow> window;  // the last complete one, under an imposed stress
 };
 
-/// Shears `state` in place. Errors: numerics, with strain and step number as context.
-ShearingResult shear(State& state, const Model& model, const ShearingTask& task,
-                     const ShearingOutput& output, Progress& progress);
+template <class Archive>
+void archive(Archive& a, SolverStatistics& s)
+{
+    a(s.iterations, s.largest_residual, s.fall_backs);
+}
+
+/// Shears the state of the context, from its checkpoint if there is one. `enough` is asked after
+/// each sample on the grid; true ends the run. Errors: numerics, with strain and step number as
+/// context and the last good state in a file; interrupted, after a checkpoint.
+ShearingResult shear(Context& context, const ShearingTask& task, RunFiles& files,
+                     const std::function<bool()>& enough = {});
 
 /// {"outcome", "strain", "time", "steps", "jamming_window"} of a finished run, for summary.json.
 nlohmann::ordered_json shearing_json(const State& state, const ShearingResult& result);

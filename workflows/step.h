@@ -25,6 +25,8 @@
 
 namespace sigmaflow::workflows {
 
+class Keeper;
+
 /// A shearing step that a later step can refer to.
 struct PlannedRun {
     std::string name;
@@ -38,6 +40,7 @@ struct Plan {
     const Suspension& suspension;
     std::string step_name;
     bool has_state = false;
+    bool changes_state = false;  // set by the step that is validated
     std::vector<PlannedRun> runs;
 
     /// Error(input) if no step before has made a packing.
@@ -66,6 +69,7 @@ struct Context {
     io::Provenance provenance;
     RunFolder& folder;
     Progress& progress;
+    Keeper& keeper;
     int threads = 1;  // of each evaluation
 
     State state;
@@ -81,6 +85,7 @@ struct Context {
 
 struct Step {
     std::string kind, name;
+    bool changes_state = false;
     std::string pointer;  // "/steps/2"
     std::function<void(io::Fields&)> describe;
     std::function<void(const io::JsonNode&, Plan&)> validate;
@@ -98,13 +103,13 @@ StepKind step_kind(std::string_view name, std::string_view summary)
 {
     return {name, summary, [name] {
                 auto step = std::make_shared<T>();
-                return Step{
-                    std::string(name),
-                    std::string(name),
-                    "",
-                    [step](io::Fields& f) { step->describe(f); },
-                    [step](const io::JsonNode& node, Plan& plan) { step->validate(node, plan); },
-                    [step](Context& context) { step->run(context); }};
+                return Step{.kind = std::string(name),
+                            .name = std::string(name),
+                            .pointer = "",
+                            .describe = [step](io::Fields& f) { step->describe(f); },
+                            .validate = [step](const io::JsonNode& node,
+                                               Plan& plan) { step->validate(node, plan); },
+                            .run = [step](Context& context) { step->run(context); }};
             }};
 }
 

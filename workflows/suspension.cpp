@@ -13,7 +13,7 @@ void Suspension::describe(io::Fields& f)
       "radius of the large spheres; the small ones have radius 1");
     f("small_volume_share", packing.small_volume_share, io::between(0, 1), "-",
       "share of the solid volume in small spheres");
-    f("radii", packing.radii, io::Length{2, 10'000'000}, io::between(0.01, 100), "a",
+    f("radii", packing.radii, io::Length{2, 1'000'000}, io::between(0.01, 100), "a",
       "radii of all spheres, instead of size_ratio and small_volume_share");
     f("box_shape", packing.box_shape, io::between(0.01, 100), "-",
       "ratios of the box lengths along flow, gradient and vorticity");

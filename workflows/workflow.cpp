@@ -112,12 +112,18 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
     const std::vector<io::JsonNode> nodes = root.member("steps").elements({1, most_steps});
     for (const io::JsonNode& node : nodes) workflow.steps.push_back(make_step(node));
     name_steps(workflow.steps, nodes);
-    Plan plan{.suspension = *workflow.suspension, .step_name = "", .has_state = false, .runs = {}};
+    Plan plan{.suspension = *workflow.suspension,
+              .step_name = "",
+              .has_state = false,
+              .changes_state = false,
+              .runs = {}};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         Step& step = workflow.steps[i];
         io::read_fields(nodes[i], step_fields(step));
         plan.step_name = step.name;
+        plan.changes_state = false;
         step.validate(nodes[i], plan);
+        step.changes_state = plan.changes_state;
     }
     return workflow;
 }
@@ -135,7 +141,12 @@ std::vector<io::Field> step_fields(Step& step)
 
 Workflow read_workflow(const std::filesystem::path& path)
 {
-    return checked_workflow(io::JsonDocument::read(path), path.stem().string());
+    return read_workflow(io::JsonDocument::read(path), path);
+}
+
+Workflow read_workflow(const io::JsonDocument& document, const std::filesystem::path& path)
+{
+    return checked_workflow(document, path.stem().string());
 }
 
 Workflow parse_workflow(const std::string& text, const std::string& file)

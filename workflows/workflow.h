@@ -27,6 +27,7 @@ struct Workflow {
 };
 
 Workflow read_workflow(const std::filesystem::path& path);
+Workflow read_workflow(const io::JsonDocument& document, const std::filesystem::path& path);
 /// `file` stands for the file in error messages.
 Workflow parse_workflow(const std::string& text, const std::string& file);
 

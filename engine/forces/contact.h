@@ -24,6 +24,13 @@ struct ContactLoad {
     Vec3 torque_on_i = Vec3::Zero(), torque_on_j = Vec3::Zero();
 };
 
+template <class Archive>
+void archive(Archive& a, ContactLoad& c)
+{
+    a(c.pair, c.memory, c.load, c.frictional, c.friction, c.force_on_i, c.torque_on_i,
+      c.torque_on_j);
+}
+
 /// Law of one touching pair with the given memory; a, b: radii of i and j.
 ContactLoad contact_load(const Pair& pair, double a, double b, const Contact& memory,
                          const Model& model, const Stiffness& stiffness);

@@ -39,7 +39,7 @@ TEST(AtomicFile, NamesThePathAndTheReasonOfTheSystem)
                  [&] { write_file(folder / "below", "text"); });
     expect_error(ErrorKind::missing, {(folder / "none").string(), "No such file or directory"},
                  [&] { read_file(folder / "none"); });
-    expect_error(ErrorKind::missing, {"Is a directory"}, [&] { read_file(folder / "below"); });
+    expect_error(ErrorKind::missing, {"is a folder"}, [&] { read_file(folder / "below"); });
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"below", "file"}));
 }
 

@@ -249,10 +249,10 @@ TEST_F(JsonFile, MissingFilesFoldersPipesAndDevicesAreNotRead)
     }
 }
 
-TEST_F(JsonFile, FilesAbove64MebibytesAreRefusedUnread)
+TEST_F(JsonFile, FilesAbove32MebibytesAreRefusedUnread)
 {
     const auto path = write("{}");
-    std::filesystem::resize_file(path, (std::uintmax_t{64} << 20) + 1);
+    std::filesystem::resize_file(path, (std::uintmax_t{32} << 20) + 1);
     EXPECT_EQ(kind_of(path), ErrorKind::input);
 }
 

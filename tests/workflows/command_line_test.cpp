@@ -60,10 +60,10 @@ TEST_F(CommandLine, WrongUsageIs64)
 
 TEST_F(CommandLine, MissingInputIs66)
 {
-    expect_error("run nothing.json", 66, "nothing.json: no such file");
+    expect_error("run nothing.json", 66, "nothing.json: cannot be read: No such file");
     expect_error("run .", 66, "is a folder, not a file");
     expect_error("run /dev/zero", 66, "is not a regular file");
-    expect_error("evaluate nothing.json", 66, "nothing.json: no such file");
+    expect_error("evaluate nothing.json", 66, "nothing.json: cannot be read: No such file");
 }
 
 TEST_F(CommandLine, InvalidInputIs65AndNothingIsWritten)
@@ -86,13 +86,14 @@ TEST_F(CommandLine, FolderOfSomethingElseIs73AndUntouched)
     EXPECT_FALSE(std::filesystem::exists(folder / "mine/manifest.json"));
 
     write("mine/manifest.json", R"({"files": ["thesis.txt"]})");  // not one of ours
+    std::filesystem::create_directories(folder / "mine/.sigmaflow");
     expect_error("run w.json --out mine", 73, "not one of sigmaflow");
     EXPECT_EQ(text_of(folder / "mine/thesis.txt"), "precious");
     expect_error("run w.json --out w.json", 73, "is not a folder");
     expect_error("run w.json --out /proc/nowhere", 73, "cannot make the folder");
 }
 
-TEST_F(CommandLine, EarlierRunOfTheSameWorkflowIsReplacedAndOtherFilesStay)
+TEST_F(CommandLine, EarlierRunOfTheSameWorkflowIsUsedAndOtherFilesStay)
 {
     write("w.json", packing);
     ASSERT_EQ(run("run w.json").exit_code, 0);
@@ -100,7 +101,10 @@ TEST_F(CommandLine, EarlierRunOfTheSameWorkflowIsReplacedAndOtherFilesStay)
     const std::string first = text_of(folder / "out/w/pack/state.json");
     const Said again = run("run w.json");
     EXPECT_EQ(again.exit_code, 0) << again.err;
-    EXPECT_TRUE(contains(again.err, "in place of an earlier run")) << again.err;
+    EXPECT_TRUE(contains(again.err, "from an earlier run")) << again.err;
+    const Said forced = run("run w.json --force");
+    EXPECT_EQ(forced.exit_code, 0) << forced.err;
+    EXPECT_TRUE(contains(forced.err, "again, --force")) << forced.err;
     EXPECT_EQ(text_of(folder / "out/w/pack/state.json"), first);
     EXPECT_EQ(text_of(folder / "out/w/notes.txt"), "mine");
 
@@ -108,18 +112,20 @@ TEST_F(CommandLine, EarlierRunOfTheSameWorkflowIsReplacedAndOtherFilesStay)
     expect_error("run other.json --out out/w", 73, "holds a run of another workflow, \"w\"");
 }
 
-TEST_F(CommandLine, ManifestOfAnEarlierRunCannotRemoveFilesElsewhere)
+TEST_F(CommandLine, LinksInTheFolderLeadNothingElsewhere)
 {
     write("w.json", packing);
-    write("precious.txt", "precious");
-    std::filesystem::create_directories(folder / "out/w");
-    write(
-        "out/w/manifest.json",
-        R"({"sigmaflow": "0.1.0", "workflow": {"name": "w"}, "files": [{"name": "../../precious.txt"},
-              {"name": ")" +
-            (folder / "precious.txt").string() + R"("}]})");
-    EXPECT_EQ(run("run w.json").exit_code, 0);
-    EXPECT_EQ(text_of(folder / "precious.txt"), "precious");
+    std::filesystem::create_directories(folder / "elsewhere");
+    ASSERT_EQ(run("run w.json").exit_code, 0);
+    std::filesystem::remove_all(folder / "out/w/pack");
+    std::filesystem::create_directory_symlink(folder / "elsewhere", folder / "out/w/pack");
+    expect_error("run w.json -q", 73, "out/w/pack: is a symbolic link");
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "elsewhere"));
+    std::filesystem::remove(folder / "out/w/pack");
+    std::filesystem::remove_all(folder / "out/w/.sigmaflow");
+    std::filesystem::create_directory_symlink(folder / "elsewhere", folder / "out/w/.sigmaflow");
+    expect_error("run w.json -q", 73, ".sigmaflow: is a symbolic link");
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "elsewhere"));
 }
 
 TEST_F(CommandLine, FolderThatAnotherProcessWritesToIs75)
@@ -128,7 +134,7 @@ TEST_F(CommandLine, FolderThatAnotherProcessWritesToIs75)
     ASSERT_EQ(run("run w.json --out used").exit_code, 0);
     const int other = open((folder / "used").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     ASSERT_EQ(flock(other, LOCK_EX | LOCK_NB), 0);
-    expect_error("run w.json --out used", 75, "another sigmaflow is writing to this folder");
+    expect_error("run w.json --out used", 75, " is writing to this folder");
     close(other);
     EXPECT_EQ(run("run w.json --out used").exit_code, 0);
 }

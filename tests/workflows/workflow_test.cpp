@@ -105,7 +105,8 @@ TEST(StepsHelp, ExplainsEveryParameterOfEveryStep)
             EXPECT_FALSE(field.help.empty()) << field.name;
         }
     }
-    EXPECT_NE(steps_help().find("friction_static: >= 0; default: 1.0"), std::string::npos);
+    EXPECT_NE(steps_help().find("friction_static: >= 0 and <= 1e+06; default: 1.0"),
+              std::string::npos);
 }
 
 TEST(StepsHelp, RefusesAnUnknownStepAsWrongUsage)

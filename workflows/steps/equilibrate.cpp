@@ -46,6 +46,7 @@ struct Equilibrate {
             throw node.error_at_key("window", "must be >= 4 * series_interval = " +
                                                   io::number_text(4 * shearing.series_interval) +
                                                   ", got " + io::number_text(window));
+        plan.changes_state = true;
         plan.runs.push_back({plan.step_name, control, maximum_strain, false});
     }
 
@@ -66,17 +67,11 @@ struct Equilibrate {
     void run(Context& context) const
     {
         const ShearingTask task = shearing.task(maximum_strain, 0, context.threads);
-        RunFiles files(context, task.control);
+        RunFiles files(context, task.control, false);
         bool stationary = false;
-        double last_rate = 0;
-        const ShearingOutput output{[&](const Sample& sample, bool on_grid) {
-                                        files.append(sample, on_grid);
-                                        last_rate = sample.shear_rate;
-                                    },
-                                    [&](const Frame& frame) { files.append(frame, false); },
-                                    [&] { return stationary = is_stationary(files.series()); }};
         const ShearingResult result =
-            shear(context.state, context.suspension.model, task, output, context.progress);
+            shear(context, task, files, [&] { return stationary = is_stationary(files.series()); });
+        const double last_rate = files.last_sample().shear_rate;
         Run& run = files.finish();
         run.jammed = result.outcome == Outcome::jammed;
         context.results["control"] = control_json(task.control);

@@ -28,6 +28,7 @@ struct Shear {
             throw node.error_at_key(
                 "frame_interval",
                 "gives more than 99999 frames, the strain is " + io::number_text(strain));
+        plan.changes_state = true;
         plan.runs.push_back({plan.step_name, control, strain, true});
     }
 
@@ -35,13 +36,8 @@ struct Shear {
     {
         const ShearingTask task = shearing.task(strain, frame_interval, context.threads);
         const Control& control = task.control;
-        RunFiles files(context, control);
-        const ShearingOutput output{
-            [&](const Sample& sample, bool on_grid) { files.append(sample, on_grid); },
-            [&](const Frame& frame) { files.append(frame, true); },
-            {}};
-        const ShearingResult result =
-            shear(context.state, context.suspension.model, task, output, context.progress);
+        RunFiles files(context, control, true);
+        const ShearingResult result = shear(context, task, files);
         Run& run = files.finish();
         run.jammed = result.outcome == Outcome::jammed;
         context.results["control"] = control_json(control);

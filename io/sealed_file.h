@@ -1,0 +1,26 @@
+// io/sealed_file.h -- a file of bytes that knows its kind and notices every change.
+//
+// "sigmaflow sealed file", kind, version, length, the bytes, and a checksum of all that. Written
+// atomically (io/atomic_file.h). Errors: file, no_space; reading: missing, input (another kind or
+// version, cut, changed).
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace sigmaflow::io {
+
+struct Seal {
+    std::string_view kind;  // e.g. "checkpoint"
+    std::uint32_t version = 1;
+};
+
+void write_sealed(const std::filesystem::path& path, const Seal& seal, std::string_view bytes);
+std::string read_sealed(const std::filesystem::path& path, const Seal& seal);
+
+/// The same in memory; `file` stands for the file in error messages.
+std::string sealed(const Seal& seal, std::string_view bytes);
+std::string unsealed(std::string_view file_content, const Seal& seal, const std::string& file);
+
+}

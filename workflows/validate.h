@@ -1,0 +1,17 @@
+// workflows/validate.h -- says what a file is, or why it is not what it should be. Computes
+// nothing.
+//
+// Recognised: workflows (JSON with "steps"), cases (JSON with "kind"), runs (HDF5), VTK polydata,
+// checkpoints and step records.
+// HDF5 and VTK files are read by a child process with limits (io/guarded.h), so that whatever they
+// hold, this process survives and needs little memory.
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace sigmaflow::workflows {
+
+/// One line: "flow.json: workflow, 6 steps". Errors: missing, input.
+std::string validate_file(const std::filesystem::path& path);
+
+}
