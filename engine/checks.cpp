@@ -181,17 +181,10 @@ void check_overlaps(const std::vector<Pair>& pairs)
 {
     const auto deeper = [](const Pair& p, const Pair& q) { return p.xi < q.xi; };
     const auto worst = std::min_element(pairs.begin(), pairs.end(), deeper);
-    if (worst == pairs.end() || worst->xi >= smallest_xi) return;
+    if (worst == pairs.end() || worst->xi >= deepest_overlap) return;
     refuse("particles " + std::to_string(worst->i) + " and " + std::to_string(worst->j),
            "overlap by " + text(-worst->xi) + " of their mean radius, the limit is " +
-               text(-smallest_xi));
-}
-
-void check_overlaps(const State& state)
-{
-    NeighbourList list;
-    list.update(state, 0);
-    check_overlaps(find_pairs(state, 0, list));
+               text(-deepest_overlap));
 }
 
 }

@@ -5,7 +5,7 @@
 // finite".
 //
 // Limits: positions and box offset at most 1e6 box lengths from the box (beyond, the images lose
-// their digits); radii and box lengths > 0; contacts i < j, sorted; overlaps xi >= smallest_xi.
+// their digits); radii and box lengths > 0; contacts i < j, sorted; overlaps xi >= deepest_overlap.
 // Spheres of the default model overlap by up to 0.04 under any stress, those of a tenth of its
 // stiffness by 0.06 [measured: README.md]; where they pass the limit, the linear spring
 // of the contact means nothing, and the step or the stiffness is wrong.
@@ -20,7 +20,7 @@
 
 namespace sigmaflow {
 
-inline constexpr double smallest_xi = -0.3;
+inline constexpr double deepest_overlap = -0.3;  // xi
 
 /// Whether all values are numbers of at most this size (but for rounding).
 bool all_within(const double* values, std::size_t count, double limit);
@@ -51,7 +51,5 @@ void check_model(const Model& model, const Control& control);
 /// Refuses the pair that overlaps most, if it passes the limit: "particles 3 and 12 overlap by 0.45
 /// of their mean radius, the limit is 0.3".
 void check_overlaps(const std::vector<Pair>& pairs);
-/// All pairs of a state; its geometry has been checked.
-void check_overlaps(const State& state);
 
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace sigmaflow {
 
@@ -20,7 +21,9 @@ void require(bool good, const char* name, const std::string& problem)
     if (!good) throw Error(ErrorKind::input, name, problem);
 }
 
-std::vector<double> radii_of(const PackingParameters& p)
+}
+
+std::vector<double> packing_radii(const PackingParameters& p)
 {
     if (!p.radii.empty()) return p.radii;
     const double small = p.small_volume_share, large = 1 - small;
@@ -33,13 +36,48 @@ std::vector<double> radii_of(const PackingParameters& p)
     return radii;
 }
 
+double random_close_packing(const std::vector<double>& radii)
+{
+    constexpr double equal_spheres = 0.64;
+    const double n = static_cast<double>(radii.size());
+    double mean = 0, solid = 0, second = 0, third = 0;
+    for (double a : radii) {
+        mean += a / n;
+        solid += a * a * a;
+    }
+    for (double a : radii) {
+        const double from_mean = a / mean - 1;
+        second += from_mean * from_mean / n;
+        third += from_mean * from_mean * from_mean / n;
+    }
+    // skewness times the square of the polydispersity
+    const double skew = second > 0 ? third / std::sqrt(second) : 0;
+    double limit = equal_spheres + 0.0658 * std::sqrt(second) + 0.0857 * skew;
+
+    std::vector<double> sorted = radii;
+    std::sort(sorted.begin(), sorted.end(), std::greater<>());
+    double larger = 0;  // share of the solid volume
+    for (auto first = sorted.begin(); first != sorted.end();) {
+        const auto last = std::upper_bound(first, sorted.end(), *first, std::greater<>());
+        const double own = static_cast<double>(last - first) * std::pow(*first, 3) / solid;
+        limit = std::min(limit, 1 / (larger + own / equal_spheres));
+        larger += own;
+        first = last;
+    }
+    return std::max(std::round(1e4 * limit) / 1e4, equal_spheres);
+}
+
+namespace {
+
 void check(const PackingParameters& p)
 {
     require(p.particles >= 1 || !p.radii.empty(), "particles", "must be >= 1");
-    require(p.volume_fraction > 0 && p.volume_fraction <= 0.64, "volume_fraction",
-            "must be in (0, 0.64], got " + std::to_string(p.volume_fraction));
     require(p.box_shape.minCoeff() > 0, "box_shape", "lengths must be > 0");
     for (double a : p.radii) require(a > 0 && std::isfinite(a), "radii", "must be > 0");
+    const double limit = random_close_packing(packing_radii(p));
+    require(p.volume_fraction > 0 && p.volume_fraction <= limit, "volume_fraction",
+            "must be > 0 and <= " + std::to_string(limit) + ", random close packing, got " +
+                std::to_string(p.volume_fraction));
 }
 
 // Force of the overlap energy sum (1/2) abar (s - r)^2 on each sphere; returns the smallest xi.
@@ -81,14 +119,14 @@ void check_box(const State& s)
 Vec3 packing_box(const PackingParameters& p)
 {
     check(p);
-    return box_of(p, radii_of(p));
+    return box_of(p, packing_radii(p));
 }
 
 State random_packing(const PackingParameters& p, const PackingProgress& progress)
 {
     check(p);
     State s;
-    s.radius = radii_of(p);
+    s.radius = packing_radii(p);
     s.box.length = box_of(p, s.radius);
     check_box(s);
     for (int i = 0; i < s.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "io/case_file.h"
 
+#include "engine/checks.h"
 #include "engine/error.h"
 #include "engine/lubrication/pair_resistance.h"
 #include "engine/pairs.h"

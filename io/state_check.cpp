@@ -1,5 +1,6 @@
 #include "io/state_check.h"
 
+#include "engine/checks.h"
 #include "engine/pairs.h"
 
 #include <algorithm>
@@ -39,18 +40,24 @@ std::vector<Candidate> crowded_pair(const State& state)
     return {{same->particle, (same + 1)->particle}};
 }
 
+double reduced_gap(const State& state, const Candidate& pair)
+{
+    const auto [i, j] = pair;
+    const double sum = state.radius[i] + state.radius[j];
+    const double distance = separation(state.box, state.position[i], state.position[j]).d.norm();
+    return 2 * (distance - sum) / sum;
+}
+
 [[noreturn]] void refuse_overlap(const State& state, const Candidate& pair, const JsonNode& node)
 {
     const auto [i, j] = pair;
-    const double distance = separation(state.box, state.position[i], state.position[j]).d.norm();
-    const double sum = state.radius[i] + state.radius[j];
+    const double xi = reduced_gap(state, pair);
     const std::string spheres = "spheres " + std::to_string(i) + " and " + std::to_string(j);
     throw node.member("positions")
         .element(static_cast<std::size_t>(j))
-        .error(distance == 0 ? "the centres of " + spheres + " coincide"
-                             : spheres + " overlap: their reduced gap xi must be >= " +
-                                   number_text(deepest_overlap) + ", got " +
-                                   number_text(2 * (distance - sum) / sum));
+        .error(xi == -2 ? "the centres of " + spheres + " coincide"
+                        : spheres + " overlap: their reduced gap xi must be >= " +
+                              number_text(deepest_overlap) + ", got " + number_text(xi));
 }
 
 }
@@ -71,7 +78,9 @@ void check_state(const State& state, double range, const JsonNode& node)
                        " [a], the distance up to which two of the largest spheres interact");
     std::vector<Candidate> pairs = crowded_pair(state);
     if (pairs.empty()) pairs = close_pairs(state, deepest_overlap, 0);
-    if (!pairs.empty()) refuse_overlap(state, pairs.front(), node);
+    if (pairs.empty()) return;
+    const auto gap = [&](const Candidate& pair) { return reduced_gap(state, pair); };
+    refuse_overlap(state, *std::ranges::min_element(pairs, {}, gap), node);
 }
 
 }

@@ -7,8 +7,9 @@ namespace sigmaflow::workflows {
 void Suspension::describe(io::Fields& f)
 {
     f("particles", packing.particles, io::Integers{2, 10'000'000}, "-", "number of spheres");
-    f("volume_fraction", packing.volume_fraction, io::above_to(0, 0.64), "-",
-      "volume of the spheres over volume of the box, met exactly");
+    f("volume_fraction", packing.volume_fraction, io::above_to(0, 1), "-",
+      "volume of the spheres over volume of the box, met exactly; at most random close packing, "
+      "0.64 for equal spheres, 0.6528 for the default mixture");
     f("size_ratio", packing.size_ratio, io::between(1, 10), "-",
       "radius of the large spheres; the small ones have radius 1");
     f("small_volume_share", packing.small_volume_share, io::between(0, 1), "-",
@@ -22,10 +23,11 @@ void Suspension::describe(io::Fields& f)
             [this](io::Fields& inner) { io::describe(inner, model); });
 }
 
-void Suspension::check(const io::JsonNode& object)
+namespace {
+
+// Given radii replace the mixture.
+void check_radii(PackingParameters& packing, const io::JsonNode& object)
 {
-    if (const auto node = object.find("model")) io::check_model(model, *node);
-    if (packing.radii.empty()) return;
     for (const char* other : {"size_ratio", "small_volume_share"})
         if (object.has(other))
             throw object.error_at_key(other, "radii already says how large the spheres are");
@@ -34,6 +36,24 @@ void Suspension::check(const io::JsonNode& object)
         throw object.member("particles")
             .wrong("must be the number of radii, " + std::to_string(given));
     packing.particles = given;
+}
+
+}
+
+void Suspension::check(const io::JsonNode& object)
+{
+    if (const auto node = object.find("model")) io::check_model(model, *node);
+    if (!packing.radii.empty()) check_radii(packing, object);
+    if (const auto value = object.find("volume_fraction"))
+        check_volume_fraction(packing.volume_fraction, *value);
+}
+
+void Suspension::check_volume_fraction(double volume_fraction, const io::JsonNode& value) const
+{
+    const double limit = random_close_packing(packing_radii(packing));
+    if (volume_fraction > limit)
+        throw value.wrong("must be <= " + io::number_text(limit) +
+                          ", random close packing of these spheres");
 }
 
 }

@@ -13,6 +13,8 @@ struct Suspension {
     void describe(io::Fields& f);
     /// Combinations that exclude each other. Errors: input, with the position in `object`.
     void check(const io::JsonNode& object);
+    /// Error(input) at `value` if the spheres have no random packing at a volume fraction.
+    void check_volume_fraction(double volume_fraction, const io::JsonNode& value) const;
 };
 
 }

@@ -458,11 +458,9 @@ TEST(Faults, AnOverlapBeyondTheLimitIsNamed)
         evaluate(s, {}, ImposedStress{1}, workspace);
     };
     EXPECT_EQ(error_of(evaluated), "no error");  // xi = -0.29
-    EXPECT_NO_THROW(check_overlaps(s));
     s.position[2].z() = 9.69;
     EXPECT_EQ(error_of(evaluated),
               "particles 1 and 2 overlap by 0.31 of their mean radius, the limit is 0.3");
-    EXPECT_SAYS(check_overlaps(s), "particles 1 and 2 overlap by 0.31");
     s.position[2] = s.position[1];
     EXPECT_SAYS(evaluated(), "centres of particles 1 and 2 coincide");
 }
@@ -487,7 +485,9 @@ TEST(Faults, ARunThatPressesSpheresIntoEachOtherStops)
         };
         EXPECT_SAYS(go_on(), "the limit is 0.3");
         EXPECT_TRUE(same_bits(run.state, last));
-        EXPECT_NO_THROW(check_overlaps(last));
+        NeighbourList list;
+        list.update(last, 0);
+        EXPECT_NO_THROW(check_overlaps(find_pairs(last, 0, list)));
     }
 }
 

@@ -99,4 +99,25 @@ TEST(Packing, RefusesWhatCannotBe)
     EXPECT_EQ(kind(200, 0.64, 50), ErrorKind::numerics);
 }
 
+TEST(RandomClosePacking, FollowsTheDistributionOfTheRadii)
+{
+    const auto mixture = [](double ratio, double share, int particles = 1000) {
+        PackingParameters p;
+        p.particles = particles;
+        p.size_ratio = ratio;
+        p.small_volume_share = share;
+        return random_close_packing(packing_radii(p));
+    };
+    for (double share : {0., 0.5, 1.}) EXPECT_EQ(mixture(1, share), 0.64);
+    EXPECT_EQ(mixture(1.4, 0), 0.64);
+    EXPECT_EQ(mixture(3, 1), 0.64);
+    // 0.73 of the spheres are small: d = 0.160, S = 1.05
+    EXPECT_NEAR(mixture(1.4, 0.5), 0.6528, 1e-4);
+    EXPECT_GT(mixture(2, 0.5), mixture(1.4, 0.5));
+    // spheres of infinite ratio fill 1/(0.5 + 0.5/0.64)
+    EXPECT_NEAR(mixture(10, 0.5, 100000), 0.7805, 2e-4);
+    EXPECT_LT(mixture(10, 0.27, 100000), 0.64 + 0.36 * 0.64 + 1e-3);
+    EXPECT_EQ(random_close_packing({0.01, 1, 1, 1, 1, 1, 1, 1, 1, 1}), 0.64);  // fills no void
+}
+
 }

@@ -24,7 +24,7 @@ struct Pack {
 
     void describe(io::Fields& f)
     {
-        f("volume_fraction", volume_fraction, io::above_to(0, 0.64), "-",
+        f("volume_fraction", volume_fraction, io::above_to(0, 1), "-",
           "instead of that of the suspension");
         f("seed", seed, "instead of that of the suspension");
     }
@@ -39,6 +39,8 @@ struct Pack {
 
     void validate(const io::JsonNode& node, Plan& plan)
     {
+        if (const auto value = node.find("volume_fraction"))
+            plan.suspension.check_volume_fraction(*volume_fraction, *value);
         const PackingParameters parameters = packing(plan.suspension);
         const Model& model = plan.suspension.model;
         const double range = std::max(model.lubrication_range, model.repulsion_range);
