@@ -1,4 +1,4 @@
-// render/image.h -- pictures in memory and as PNG files.
+// render/image.h -- pictures in memory and as PNG.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -40,8 +40,8 @@ Image side_by_side(const std::vector<Image>& images, int gap = 0);
 /// Pictures in one column, centred horizontally, `gap` white pixels between them.
 Image stacked(const std::vector<Image>& images, int gap = 0);
 
-/// Writes to a temporary file, then renames. Errors: file, no_space.
-void write_png(const std::filesystem::path& path, const Image& image);
+/// The picture as a PNG file, to be written by io::write_file.
+std::string png_bytes(const Image& image);
 
 /// Transparent pixels are laid on white. Errors: missing (cannot be read), input (not a PNG file).
 Image read_png(const std::filesystem::path& path);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 namespace sigmaflow::test {
 namespace {
@@ -41,7 +42,7 @@ std::string keep_candidate(const render::Image& image, const std::string& name)
     const auto folder = std::filesystem::current_path() / "image_candidates";
     std::filesystem::create_directories(folder);
     const auto path = folder / (name + ".png");
-    render::write_png(path, image);
+    std::ofstream(path, std::ios::binary) << render::png_bytes(image);
     return path.string();
 }
 

@@ -1,4 +1,5 @@
 // Step "snapshot": a picture of the particles of one stored frame.
+#include "io/atomic_file.h"
 #include "io/particles_vtp.h"
 #include "render/particles.h"
 #include "workflows/pictures.h"
@@ -67,7 +68,8 @@ struct Snapshot {
         draw_or_note(context, [&] {
             const render::Image image =
                 render::render_particles(io::particles_polydata(frame), view);
-            render::write_png(context.folder.file(context.step_name + ".png"), image);
+            io::write_file(context.folder.file(context.step_name + ".png"),
+                           render::png_bytes(image));
         });
     }
 };
