@@ -58,6 +58,7 @@ GrowingDataset::GrowingDataset(const Hdf5Group& group, const std::string& name, 
     const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_chunk(layout.id(), rank, chunk.data());
     H5Pset_fletcher32(layout.id());
+    H5Pset_obj_track_times(layout.id(), false);  // the same run gives the same bytes
     dataset_ = created(H5Dcreate2(group.id(), name.c_str(), stored_type(native), space.id(),
                                   H5P_DEFAULT, layout.id(), H5P_DEFAULT),
                        H5Dclose, where_);

@@ -30,6 +30,14 @@ Hdf5Handle file_access()
     return access;
 }
 
+/// Groups without the time at which they were made: the same run gives the same bytes.
+Hdf5Handle timeless(hid_t property_class)
+{
+    Hdf5Handle properties(H5Pcreate(property_class), H5Pclose);
+    H5Pset_obj_track_times(properties.id(), false);
+    return properties;
+}
+
 /// An attribute with a single value.
 Hdf5Handle open_attribute(const Hdf5Group& group, const std::string& name)
 {
@@ -52,7 +60,8 @@ Hdf5Group Hdf5Group::create_file(const std::filesystem::path& path)
 {
     prepare();
     const Hdf5Handle access = file_access();
-    const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id());
+    const Hdf5Handle creation = timeless(H5P_FILE_CREATE);
+    const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
     return Hdf5Group(created(id, H5Fclose, path.string()), path, "");
 }
 
@@ -67,7 +76,8 @@ Hdf5Group Hdf5Group::open_file(const std::filesystem::path& path)
 
 Hdf5Group Hdf5Group::create_group(const std::string& name) const
 {
-    const hid_t group = H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const Hdf5Handle creation = timeless(H5P_GROUP_CREATE);
+    const hid_t group = H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT);
     return Hdf5Group(created(group, H5Gclose, where(name)), file_, name_ + '/' + name);
 }
 
