@@ -4,6 +4,7 @@
 #include "io/particles_vtp.h"
 #include "io/run_file.h"
 #include "tests/io/random_frame.h"
+#include "tests/support/sanitized.h"
 #include "tests/workflows/measured.h"
 #include "tests/workflows/program.h"
 
@@ -23,12 +24,6 @@ namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
 constexpr double most_cpu_seconds = 1, most_megabytes = 200;
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool limits_hold = false;  // sanitizers take time and memory of their own
-#else
-constexpr bool limits_hold = true;
-#endif
-
 std::set<std::string> files_below(const fs::path& folder)
 {
     std::set<std::string> names;
@@ -78,7 +73,7 @@ protected:
         slowest_ = std::max(slowest_, run.cpu_seconds);
         hungriest_ = std::max(hungriest_, run.megabytes);
         const std::string err = text_of(folder / "said.err");
-        if (limits_hold) {
+        if (!sanitized) {
             EXPECT_LT(run.cpu_seconds, most_cpu_seconds) << arguments.back() << "\n" << err;
             EXPECT_LT(run.megabytes, most_megabytes) << arguments.back() << "\n" << err;
         }
@@ -295,7 +290,7 @@ TEST_F(BadInput, DamagedRunsAreRefusedOrHoldTheSameNumbers)
     run_limited({"validate", "run.h5"}, code);
     ASSERT_EQ(code, 0) << text_of(folder / "said.err");
     EXPECT_EQ(text_of(folder / "said.out"), "run.h5: run, 3 frames of 20 particles, 3 samples\n");
-    constexpr int copies = 240;
+    constexpr int copies = 160;
     for (int number = 0; number < copies; ++number) {
         write("run.h5", damaged(good, number));
         const std::string said = run_limited({"validate", "run.h5"}, code);
@@ -322,7 +317,7 @@ TEST_F(BadInput, DamagedVtkFilesCannotTakeTheProgramDown)
     int code = 0, refused = 0;
     run_limited({"validate", "a.vtp"}, code);
     ASSERT_EQ(code, 0) << text_of(folder / "said.err");
-    constexpr int copies = 100;
+    constexpr int copies = 60;
     for (int number = 0; number < copies; ++number) {
         write("a.vtp", damaged(good, number));
         const std::string said = run_limited({"validate", "a.vtp"}, code);
