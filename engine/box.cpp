@@ -6,11 +6,11 @@ namespace sigmaflow {
 
 namespace {
 
-// x - floor(x/L) L can round to L itself for a tiny negative x.
+// x - floor(x/L) L can round to L itself for a tiny negative x. What is not a number stays so.
 double into_period(double x, double length)
 {
     const double y = x - std::floor(x / length) * length;
-    return y < length ? y : 0.;
+    return y >= length ? 0. : y;
 }
 
 }

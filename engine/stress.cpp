@@ -245,6 +245,7 @@ StressSummary summarise(const State& s, const Evaluation& e, const Velocities& h
     sum.hydrodynamic /= volume;
     sum.contact /= volume;
     sum.repulsion /= volume;
+    check_scalar(sum.solvent, "the stress of the solvent");
     check_stress(sum.total, "total");
     check_scalar(sum.hydrodynamic, "the hydrodynamic stress");
     check_scalar(sum.contact, "the stress of the contacts");

@@ -357,19 +357,57 @@ TEST(Faults, SamplesAreNotSpoiltByWhatIsLeftOfEarlierOnes)
 
 TEST(Faults, StressThatIsNotFiniteIsNamed)
 {
-    // velocities and forces are finite, their products are not
-    Flow run = flow_of(scenes[0]);
-    run.control = ImposedRate{1e200};
-    run.model.repulsion = 1e200;
-    run.model.drag_factor = 1;
-    for (Vec3& x : run.state.position) x *= 1e120;
-    for (double& a : run.state.radius) a *= 1e120;
-    run.state.box.length *= 1e120;
-    run.state.box.offset *= 1e120;
-    run.state.contacts.clear();
-    const State& s = run.state;
-    EXPECT_SAYS(evaluate_in_detail(s, run.model, run.control, run.workspace), "is not finite");
-    EXPECT_SAYS(evaluate_sample(s, run.model, run.control, run.workspace), "is not finite");
+    State s;  // far apart: nothing moves relative to the flow
+    s.box.length = Vec3(50, 50, 50);
+    s.radius = {1, 1};
+    s.position = {Vec3(2, 2, 2), Vec3(28, 28, 28)};
+    Model m;
+    m.stiffness_scale = StiffnessScale::fixed;
+    Workspace workspace;
+    const Control control = ImposedRate{1e308};
+    EXPECT_SAYS(evaluate_in_detail(s, m, control, workspace),
+                "the stress solvent_xy is not finite");
+    EXPECT_SAYS(evaluate_sample(s, m, control, workspace),
+                "the stress of the solvent is not finite");
+}
+
+// What a step is given, and what it makes of it.
+TEST(Faults, StepsLeaveNothingThatIsNotFinite)
+{
+    for (Scheme scheme : {Scheme::euler, Scheme::heun}) {
+        const auto step_with = [&](const std::function<void(State&, Evaluation&)>& inject) {
+            Flow run = flow_of({"", scheme, ImposedStress{3}, SolverKind::pcg});
+            run.advance_once();
+            Evaluation first = evaluate(run.state, run.model, run.control, run.workspace);
+            inject(run.state, first);
+            const State before = run.state;
+            const std::string said = error_of([&] {
+                step(run.state, run.model, run.control, scheme, March::time, 1e-5, first,
+                     run.workspace);
+            });
+            EXPECT_TRUE(same_bits(run.state, before));
+            return said;
+        };
+        for (double value : {nan, inf}) {
+            EXPECT_EQ(step_with([&](State& s, Evaluation&) { s.time = value; }),
+                      "the time is not finite");
+            for (int axis = 0; axis < 3; ++axis)
+                EXPECT_EQ(step_with([&](State&, Evaluation& e) { e.nonaffine[5][axis] = value; }),
+                          "the position of particle 5 is not finite");
+            EXPECT_EQ(step_with([&](State&, Evaluation& e) { e.shear_rate = value; }),
+                      "the box offset is not finite");
+            const std::string spring =
+                step_with([&](State&, Evaluation& e) { e.motion[0].slip.z() = value; });
+            EXPECT_TRUE(spring.starts_with("the spring of the contact of particles")) << spring;
+        }
+    }
+    Flow run = flow_of(scenes[2]);
+    run.advance_once();
+    run.state.time = nan;
+    const State before = run.state;
+    EXPECT_SAYS(implicit_step(run.state, run.model, run.control, 1e-4, inf, run.workspace),
+                "the time is not finite");
+    EXPECT_TRUE(same_bits(run.state, before));
 }
 
 TEST(Faults, StatesWithoutAMeaningAreRefused)
