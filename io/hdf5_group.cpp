@@ -51,8 +51,9 @@ Hdf5Group::Hdf5Group(Hdf5Handle handle, std::filesystem::path file, std::string 
 Hdf5Group Hdf5Group::create_file(const std::filesystem::path& path)
 {
     prepare();
-    const Hdf5Handle access = file_access(), timeless = without_times(H5P_FILE_CREATE);
-    const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, timeless.id(), access.id());
+    const Hdf5Handle access = file_access();
+    const Hdf5Handle creation = without_times(H5P_FILE_CREATE);
+    const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
     return Hdf5Group(created(id, H5Fclose, path.string()), path, "");
 }
 
@@ -67,8 +68,8 @@ Hdf5Group Hdf5Group::open_file(const std::filesystem::path& path)
 
 Hdf5Group Hdf5Group::create_group(const std::string& name) const
 {
-    const Hdf5Handle timeless = without_times(H5P_GROUP_CREATE);
-    const hid_t group = H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, timeless.id(), H5P_DEFAULT);
+    const Hdf5Handle creation = without_times(H5P_GROUP_CREATE);
+    const hid_t group = H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT);
     return Hdf5Group(created(group, H5Gclose, where(name)), file_, name_ + '/' + name);
 }
 

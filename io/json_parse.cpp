@@ -22,6 +22,14 @@ bool is_structure(char c)
     return c == '{' || c == '}' || c == '[' || c == ']' || c == ',' || c == ':';
 }
 
+/// At most `longest` bytes of a text, every one that is not UTF-8 replaced by U+FFFD.
+std::string readable(const std::string& text, std::size_t longest)
+{
+    using nlohmann::json;
+    const auto replace = json::error_handler_t::replace;
+    return json::parse(json(text.substr(0, longest)).dump(-1, ' ', false, replace));
+}
+
 std::size_t line_of(const std::string& text, std::size_t offset)
 {
     return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + offset, '\n'));
@@ -277,7 +285,7 @@ private:
              {"NaN", "nan", "NAN", "Infinity", "-Infinity", "inf", "-inf", "Inf"})
             if (token == word) return std::string(word) + " is not a JSON number";
         if (message.find("invalid literal") != std::string::npos)
-            return "unexpected " + in_quotes(token, 40);
+            return "unexpected " + in_quotes(readable(token, 80), 40);
         const std::size_t dash = message.find(" - ");
         std::string rest = dash == std::string::npos ? message : message.substr(dash + 3);
         return rest.substr(0, rest.find("; last read"));  // may hold bytes that are not text

@@ -215,9 +215,9 @@ RunWriter::RunWriter(const std::filesystem::path& path, const State& first, cons
         throw Error(ErrorKind::input, path.string(), "needs at least one particle, got 0");
     std::filesystem::path part = path;
     part += ".part";
-    const Hdf5Group& file =
-        (impl_ = std::make_unique<Impl>(path, part, Hdf5Group::create_file(part), first.radius))
-            ->file;
+    const Hdf5Group& file = (impl_ = std::make_unique<Impl>(
+                                 Impl{path, part, Hdf5Group::create_file(part), first.radius}))
+                                ->file;
     write_h5md(file, provenance);
     write_parameters(file, {model, control});
     const Hdf5Group texts = file.create_group("provenance");

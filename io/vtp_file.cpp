@@ -12,6 +12,7 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <string>
@@ -78,18 +79,42 @@ void write_vtp(const std::filesystem::path& path, vtkPolyData* data)
 
 namespace {
 
-/// XML can define abbreviations that grow without end or name other files; VTK writes none.
-std::string without_definitions(std::string text, const std::filesystem::path& path)
+std::string place(const std::filesystem::path& path, const std::string& text, std::size_t offset)
 {
-    if (text.find("<!DOCTYPE") != std::string::npos || text.find("<!ENTITY") != std::string::npos)
-        throw Error(ErrorKind::input, path.string(), "must not define XML entities");
-    return text;
+    const auto begin = text.begin(), here = begin + static_cast<std::ptrdiff_t>(offset);
+    const auto lines = std::count(begin, here, '\n');
+    const std::size_t line_break = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
+    const std::size_t column = line_break == std::string::npos ? offset + 1 : offset - line_break;
+    return path.string() + ':' + std::to_string(lines + 1) + ':' + std::to_string(column);
+}
+
+/// What makes XML parsers run for ever: definitions that grow without end or name other files (VTK
+/// writes none), tags without end, and endless numbers of tags.
+void check_xml(const std::string& text, const std::filesystem::path& path)
+{
+    constexpr std::size_t longest_tag = 4096, most_tags = 10'000;
+    const auto refuse = [&](std::size_t offset, const std::string& problem) {
+        throw Error(ErrorKind::input, place(path, text, offset), problem);
+    };
+    const std::size_t end = std::min(text.find("<AppendedData"), text.size());
+    std::size_t tags = 0;
+    for (std::size_t at = text.find('<'); at < end; at = text.find('<', at + 1)) {
+        if (text.compare(at, 9, "<!DOCTYPE") == 0 || text.compare(at, 8, "<!ENTITY") == 0)
+            refuse(at, "must not define XML entities");
+        if (std::min(text.find('>', at), text.size()) - at > longest_tag)
+            refuse(at,
+                   "must not have a tag of more than " + std::to_string(longest_tag) + " bytes");
+        if (++tags > most_tags)
+            refuse(at, "must not have more than " + std::to_string(most_tags) + " tags");
+    }
 }
 
 }
 
 vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path)
 {
+    const std::string text = read_file(path);
+    check_xml(text, path);
     std::string message;
     const auto command = listener(message);
     vtkNew<vtkXMLPolyDataReader> reader;
@@ -98,7 +123,7 @@ vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path)
     reader->SetParserErrorObserver(command);
     reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, command);
     reader->ReadFromInputStringOn();
-    reader->SetInputString(without_definitions(read_file(path), path));
+    reader->SetInputString(text);
     reader->Update();
     vtkSmartPointer<vtkPolyData> data = reader->GetOutput();
     if (!message.empty() || reader->GetErrorCode() != 0)
@@ -146,6 +171,8 @@ void check_cells(vtkPolyData* data, const std::string& where)
 VtpSummary check_vtp(const std::filesystem::path& path)
 {
     const vtkSmartPointer<vtkPolyData> data = read_vtp(path);
+    if (data->GetPoints() == nullptr)
+        throw Error(ErrorKind::input, path.string() + ": Points", "must be numbers, three a point");
     for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k) {
         const double* point = data->GetPoint(k);
         if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))

@@ -1,4 +1,4 @@
-// render/image.h -- pictures in memory and as PNG. Nothing here writes files.
+// render/image.h -- pictures in memory and as PNG.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -40,7 +40,7 @@ Image side_by_side(const std::vector<Image>& images, int gap = 0);
 /// Pictures in one column, centred horizontally, `gap` white pixels between them.
 Image stacked(const std::vector<Image>& images, int gap = 0);
 
-/// The content of a PNG file.
+/// The picture as a PNG file, to be written by io::write_file.
 std::string png_bytes(const Image& image);
 
 /// Transparent pixels are laid on white. Errors: missing (cannot be read), input (not a PNG file).

@@ -10,6 +10,7 @@
 #include <iterator>
 
 namespace sigmaflow::render {
+
 std::string png_bytes(const Image& image)
 {
     png_image header{};

@@ -13,10 +13,15 @@ constexpr const char* variable = "OPENBLAS_CORETYPE";
 const char* best_kernel()
 {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("x86-64-v4")) return "SkylakeX";
-    if (__builtin_cpu_supports("x86-64-v3")) return "Haswell";
-#endif
+    // what x86-64-v3 and -v4 mean for a kernel; clang does not know these names
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return nullptr;
+    const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                        __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                        __builtin_cpu_supports("avx512vl");
+    return avx512 ? "SkylakeX" : "Haswell";
+#else
     return nullptr;
+#endif
 }
 
 }

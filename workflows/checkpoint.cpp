@@ -21,14 +21,6 @@ std::filesystem::path path_of(const RunFolder& folder, std::uint64_t generation)
     return folder.own_file("checkpoint." + std::to_string(generation % 2));
 }
 
-/// The checkpoint in a file whose appended files are what they were.
-Checkpoint usable(const RunFolder& folder, const std::filesystem::path& path)
-{
-    Checkpoint result = read_checkpoint(path);
-    for (const FileMark& file : result.files) io::verify(folder.path() / file.name, file.mark);
-    return result;
-}
-
 }
 
 std::string rounded_text(double strain)
@@ -65,6 +57,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path)
 }
 
 std::optional<Checkpoint> newest_checkpoint(const RunFolder& folder,
+                                            const std::set<std::string>& finished,
                                             std::vector<std::string>& warnings)
 {
     std::optional<Checkpoint> newest;
@@ -74,7 +67,9 @@ std::optional<Checkpoint> newest_checkpoint(const RunFolder& folder,
         std::error_code ignored;
         if (!std::filesystem::exists(path, ignored)) continue;
         try {
-            Checkpoint one = usable(folder, path);
+            Checkpoint one = read_checkpoint(path);
+            if (finished.contains(one.step.key)) continue;
+            for (const FileMark& file : one.files) io::verify(folder.path() / file.name, file.mark);
             if (!newest || one.generation > newest->generation) newest = std::move(one);
         } catch (const Error& error) {
             problems.push_back(error.what());

@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,8 +57,10 @@ Checkpoint parse_checkpoint(std::string_view content, const std::string& file);
 /// Errors: missing, input.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
-/// The newest one that can be used; what is wrong with a newer one goes to `warnings`.
+/// The newest one that can be used; what is wrong with a newer one goes to `warnings`. Those of
+/// finished steps (by their keys), which could not be removed then, do not count.
 std::optional<Checkpoint> newest_checkpoint(const RunFolder& folder,
+                                            const std::set<std::string>& finished,
                                             std::vector<std::string>& warnings);
 /// Names of the steps that the checkpoints belong to, as far as they can be read.
 std::vector<std::string> stored_steps(const RunFolder& folder);

@@ -43,22 +43,20 @@ int complain(const std::string& message, ErrorKind kind)
     return static_cast<int>(kind);
 }
 
-/// One line for each good file; each bad one is an error, the first of which is thrown at the end.
+/// One line for each good file, an error for each bad one; the last error is thrown.
 void validate_files(const std::vector<std::string>& files)
 {
-    std::optional<Error> first;
+    std::optional<Error> last;
     for (const std::string& file : files) {
         try {
             print(workflows::validate_file(file) + "\n");
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::missing) throw;
-            if (first)
-                complain(error.what(), error.kind());
-            else
-                first = error;
+            if (last) complain(last->what(), last->kind());
+            last = error;
         }
     }
-    if (first) throw *first;
+    if (last) throw *last;
 }
 
 void run_command(int argc, char** argv)

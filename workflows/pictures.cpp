@@ -23,8 +23,8 @@ void write_plot(Context& context, const std::string& name, const render::Plot& p
 {
     io::write_file(context.folder.file(name + ".svg"), render::plot_svg(plot));
     draw_or_note(context, [&] {
-        const render::Image image = render::render_plot(plot);
-        io::write_file(context.folder.file(name + ".png"), render::png_bytes(image));
+        const std::string picture = render::png_bytes(render::render_plot(plot));
+        io::write_file(context.folder.file(name + ".png"), picture);
     });
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace sigmaflow::workflows {
 
@@ -96,7 +97,9 @@ Resumption plan_resumption(const Workflow& workflow, const RunFolder& folder, bo
             if (earlier.good.contains(step.identity.name)) step.reason = "--force";
         return plan;
     }
-    plan.checkpoint = newest_checkpoint(folder, plan.warnings);
+    std::set<std::string> finished;
+    for (const auto& [name, record] : earlier.good) finished.insert(record.identity.key);
+    plan.checkpoint = newest_checkpoint(folder, finished, plan.warnings);
 
     const std::string& suspension = plan.steps.front().identity.suspension;
     const auto require_same = [&](const StepIdentity& then) {
@@ -116,16 +119,7 @@ Resumption plan_resumption(const Workflow& workflow, const RunFolder& folder, bo
         step.reason = reason_against(found->second, step.identity, folder);
         if (step.reason.empty()) step.record = std::move(found->second);
     }
-    if (plan.checkpoint) {
-        const bool finished =
-            std::any_of(plan.steps.begin(), plan.steps.end(), [&](const PlannedStep& step) {
-                return step.record && step.record->identity.key == plan.checkpoint->step.key;
-            });
-        if (finished)  // ended between the record of the step and the removal of its checkpoints
-            plan.checkpoint.reset();
-        else
-            check_checkpoint(plan);
-    }
+    if (plan.checkpoint) check_checkpoint(plan);
     if (plan.checkpoint && plan.checkpoint->arithmetic != arithmetic())
         plan.warnings.push_back("the checkpoint was made with " + plan.checkpoint->arithmetic +
                                 ", this processor computes with " + arithmetic() +

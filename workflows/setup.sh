@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian packages), configures and builds the preset "release".
 # Called by workflows/quickstart.sh and tests/run.sh; nothing else is downloaded.
-# An argument names the one target to build.
+# An argument names the one target to build; SIGMAFLOW_MORE_PACKAGES names packages beside those of the build.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 packages=(g++ cmake make libvtk9-dev libeigen3-dev libsuitesparse-dev libopenblas-serial-dev
           libhdf5-dev libxxhash-dev nlohmann-json3-dev libcli11-dev libgtest-dev libegl-dev libpng-dev
-          libfreetype-dev fonts-dejavu-core fonts-dejavu-extra)
+          libfreetype-dev fonts-dejavu-core fonts-dejavu-extra ${SIGMAFLOW_MORE_PACKAGES:-})
 
 is_installed() {
     [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]

@@ -135,6 +135,12 @@ TEST(JsonDocument, MessagesHoldNoControlCharacters)
     EXPECT_EQ(in_quotes("γγγγ", 5), "\"γγ...\"");  // never half a character
 }
 
+TEST(JsonDocument, MessagesAreUtf8EvenAboutBytesThatAreNot)
+{
+    EXPECT_EQ(message_of("  \x9C"), "f.json:1:3: not valid JSON: unexpected \"\uFFFD\"");
+    EXPECT_EQ(message_of("[“a”]"), "f.json:1:2: not valid JSON: unexpected \"“a”\"");
+}
+
 // ------------------------------------------------------------------------------ conversions
 
 TEST(JsonNode, IntegersAreExactAndInRange)

@@ -34,6 +34,11 @@ protected:
     }
     ~PngFile() override { fs::remove_all(folder); }
 
+    static void write(const fs::path& path, const Image& image)
+    {
+        std::ofstream(path, std::ios::binary) << render::png_bytes(image);
+    }
+
     ErrorKind kind_of_reading(const fs::path& path)
     {
         try {
@@ -43,11 +48,6 @@ protected:
             return error.kind();
         }
         return ErrorKind::internal;
-    }
-
-    static void write(const fs::path& path, const Image& image)
-    {
-        std::ofstream(path, std::ios::binary) << render::png_bytes(image);
     }
 
     fs::path folder;
@@ -78,6 +78,11 @@ TEST_F(PngFile, IsReadBackByOurselves)
     const Image read = render::read_png(folder / "a.png");
     EXPECT_EQ(read.width, 64);
     EXPECT_EQ(read.rgb, image.rgb);
+}
+
+TEST_F(PngFile, HasTheSameBytesEveryTime)
+{
+    EXPECT_EQ(render::png_bytes(colourful(40, 30)), render::png_bytes(colourful(40, 30)));
 }
 
 TEST_F(PngFile, MissingForeignAndDamagedFilesAreToldApart)

@@ -64,10 +64,11 @@ TEST(Workflow, ResolvedParametersHoldWhatTheFileSaysAndTheDefaultsOfTheRest)
 
 TEST(Workflow, GivenRadiiReplaceTheMixture)
 {
-    const Json resolved = parse_workflow(R"({"suspension": {"radii": [1, 1.5, 2]},
+    const Json resolved =
+        parse_workflow(R"({"suspension": {"volume_fraction": 0.04, "radii": [1, 1.5, 2]},
                                              "steps": [{"step": "pack"}]})",
-                                         "test.json")
-                              .resolved();
+                       "test.json")
+            .resolved();
     EXPECT_EQ(resolved["suspension"]["particles"], 3);
     EXPECT_EQ(parse_workflow(resolved.dump(), "again.json").resolved(), resolved);
 }

@@ -68,7 +68,8 @@ struct Snapshot {
         draw_or_note(context, [&] {
             const render::Image image =
                 render::render_particles(io::particles_polydata(frame), view);
-            io::write_file(context.folder.file(context.step_name + ".png"), render::png_bytes(image));
+            io::write_file(context.folder.file(context.step_name + ".png"),
+                           render::png_bytes(image));
         });
     }
 };
