@@ -66,7 +66,7 @@ void combine(const SlicedVector& fixed, double rate, const SlicedVector& unit, S
 // The solver refuses what is not finite, too, but does not know where it comes from.
 void check_loads(const SlicedVector& load, const Evaluation& e)
 {
-    if (!all_finite(&load.front().c[0][0], load.size() * sizeof(Slice6) / sizeof(double)))
+    if (!all_finite(reinterpret_cast<const double*>(load.data()), load.size() * sizeof(Slice6) / sizeof(double)))
         check_forces(e.contacts);
 }
 

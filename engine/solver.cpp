@@ -30,7 +30,7 @@ void add(SlicedVector& v, double s, const SlicedVector& w)
 bool is_usable(const SlicedVector& v)
 {
     return v.empty() ||
-           all_within(&v.front().c[0][0], v.size() * sizeof(Slice6) / sizeof(double), largest);
+           all_within(reinterpret_cast<const double*>(v.data()), v.size() * sizeof(Slice6) / sizeof(double), largest);
 }
 
 void check_right_hand_side(const SlicedVector& b, const Slices& slices)

@@ -138,7 +138,7 @@ TEST(JsonDocument, MessagesHoldNoControlCharacters)
 TEST(JsonDocument, MessagesAreUtf8EvenAboutBytesThatAreNot)
 {
     EXPECT_EQ(message_of("  \x9C"), "f.json:1:3: not valid JSON: unexpected \"\uFFFD\"");
-    EXPECT_EQ(message_of("[“a”]"), "f.json:1:2: not valid JSON: unexpected \"“a”\"");
+    EXPECT_EQ(message_of("[“a”]"), "f.json:1:2: /0: not valid JSON: unexpected \"“a”\"");
 }
 
 // ------------------------------------------------------------------------------ conversions
