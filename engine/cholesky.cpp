@@ -229,6 +229,11 @@ int Cholesky::particles() const
     return impl_->n;
 }
 
+bool Cholesky::has_pattern(const std::vector<Candidate>& candidates) const
+{
+    return impl_->candidates == candidates;
+}
+
 void Cholesky::archive(ArchiveWriter& a)
 {
     const Impl& s = *impl_;

@@ -34,6 +34,7 @@ public:
                const std::vector<Velocities*>& solutions);
 
     int particles() const;
+    bool has_pattern(const std::vector<Candidate>& candidates) const;
     /// The last matrix that was factorised, with its pattern; restoring factorises it again, which
     /// gives the same factor bit by bit. Errors: input, numerics.
     void archive(ArchiveWriter& a);

@@ -38,7 +38,7 @@ void sort_into_cells(const State& s, double reach, Cells& c)
     // more cells than particles would cost more to visit than they save
     const int limit = std::max(1, static_cast<int>(std::cbrt(s.size())) * 2 + 1);
     auto count = [&](double length) {
-        return std::clamp(static_cast<int>(length / reach), 1, limit);
+        return static_cast<int>(std::clamp(length / reach, 1., static_cast<double>(limit)));
     };
     c.nx = count(s.box.length.x());
     c.ny = count(s.box.length.y());

@@ -37,6 +37,7 @@ void archive(Archive& a, Pair& p)
 struct Candidate {
     int i, j;
     using stored_as_bytes = void;
+    bool operator==(const Candidate&) const = default;
 };
 
 /// Cells of at least the reach in y and z, and in x; the particles cell by cell.

@@ -29,8 +29,8 @@ void add(SlicedVector& v, double s, const SlicedVector& w)
 // Numbers of which the squares are finite, too.
 bool is_usable(const SlicedVector& v)
 {
-    return v.empty() ||
-           all_within(reinterpret_cast<const double*>(v.data()), v.size() * sizeof(Slice6) / sizeof(double), largest);
+    return v.empty() || all_within(reinterpret_cast<const double*>(v.data()),
+                                   v.size() * sizeof(Slice6) / sizeof(double), largest);
 }
 
 void check_right_hand_side(const SlicedVector& b, const Slices& slices)
@@ -282,6 +282,8 @@ void ResistanceSolver::restore(ArchiveReader& archive)
         throw Error(ErrorKind::input, "", "has a solver that does not exist");
     if (s.factorised && s.cholesky.particles() != s.particles)
         throw Error(ErrorKind::input, "", "has a factor of another number of particles");
+    if (s.factorised && s.analysed && !s.cholesky.has_pattern(s.candidates))
+        throw Error(ErrorKind::input, "", "has a factor of other pairs");
 }
 
 std::string solver_version()

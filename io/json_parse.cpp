@@ -273,10 +273,12 @@ private:
         std::size_t before = offset;
         while (before > 0 && is_space(text[before - 1])) --before;
         const char previous = before > 0 ? text[before - 1] : ' ';
+        const std::size_t number_end = token.find_first_not_of("+-.0123456789eE");
 
         if (offset >= text.size()) return "the text ends too early";
         if (message.find("number overflow") != std::string::npos)
-            return "the number " + token.substr(0, 40) + " is too large";
+            return "the number " + token.substr(0, std::min<std::size_t>(40, number_end)) +
+                   " is too large";
         if ((token == "}" || token == "]") && previous == ',')
             return "a comma must not stand before " + token;
         if (token[0] == '/' || token[0] == '#') return "comments are not allowed";

@@ -21,6 +21,7 @@ struct PictureSize {
     int width = 1920, height = 1080;
 
     void describe(io::Fields& f);
+    double pixels() const { return static_cast<double>(width) * height; }
 };
 
 /// Rich text for titles: "$phi$ = 0.56, $sigma$/$sigma$_{0} = 2, $n$ = 200" in Greek letters.

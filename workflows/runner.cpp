@@ -1,6 +1,7 @@
 #include "workflows/runner.h"
 
 #include "io/atomic_file.h"
+#include "workflows/forecast.h"
 #include "workflows/manifest.h"
 #include "workflows/report.h"
 #include "workflows/resumption.h"
@@ -112,15 +113,19 @@ void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json
 void run_workflow(const RunOptions& options, std::ostream& results)
 {
     const Interruption interruption(options.wall_time);
-    const Workflow workflow = read_workflow(options.workflow);
+    const io::JsonDocument document = io::JsonDocument::read(options.workflow);
+    const Workflow workflow = read_workflow(document, options.workflow);
     RunFolder folder(options.out.value_or(std::filesystem::path("out") / options.workflow.stem()),
                      workflow.name);
     Resumption plan = plan_resumption(workflow, folder, options.force);
+    const Forecast needed = forecast(workflow, &plan);
+    check_room(needed, room_here(folder.path()), document.root(), folder.path());
     remove_unused(plan, folder);
     Progress progress = Progress::for_stderr(options.quiet);
     Manifest manifest(workflow, options.workflow, options.threads);
     manifest.write(folder, "running");
     progress.note("writing to " + folder.path().string());
+    if (needed.disk > 0) progress.note("needs about " + forecast_text(needed));
     for (const std::string& warning : plan.warnings) progress.warn(warning);
     Keeper keeper(folder, interruption, options.checkpoint_interval);
     Context context{.suspension = *workflow.suspension,

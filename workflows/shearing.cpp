@@ -85,7 +85,7 @@ void ShearingParameters::describe(io::Fields& f)
       "ends the step in any case; default: strain * 1e5/stress, or 1.01 * strain/rate");
 }
 
-Control ShearingParameters::check(const io::JsonNode& node, const Plan& plan, double strain) const
+Control ShearingParameters::check(const io::JsonNode& node, Plan& plan, double strain) const
 {
     plan.need_state(node);
     const Model& model = plan.suspension.model;
@@ -97,6 +97,8 @@ Control ShearingParameters::check(const io::JsonNode& node, const Plan& plan, do
     if (strain / series_interval > most_outputs)
         throw node.error_at_key("series_interval", "gives more than 1e7 rows, the strain is " +
                                                        io::number_text(strain));
+    plan.needs.volume_fraction = plan.volume_fraction;
+    plan.needs.samples = std::floor(strain / series_interval) + 2;
     return control;
 }
 

@@ -32,7 +32,15 @@ struct PlannedRun {
     std::string name;
     Control control;
     double strain = 0;
-    bool has_frames = false;
+    double frames = 0;  // that later steps can use
+};
+
+/// What a step asks of the machine (workflows/forecast.h).
+struct Needs {
+    double volume_fraction = 0;                   // of what it shears; 0: it does not shear
+    double samples = 0, frames = 0;               // that it writes
+    double frames_read = 0;                       // that it holds in memory
+    double drawn_pixels = 0, plotted_pixels = 0;  // of its picture: particles or curves
 };
 
 /// What is known while the steps are validated in their order.
@@ -40,7 +48,11 @@ struct Plan {
     const Suspension& suspension;
     std::string step_name;
     bool has_state = false;
-    bool changes_state = false;  // set by the step that is validated
+    double volume_fraction = 0;  // of the last packing
+    // set by the step that is validated:
+    bool changes_state = false;
+    Needs needs;
+
     std::vector<PlannedRun> runs;
 
     /// Error(input) if no step before has made a packing.
@@ -86,6 +98,7 @@ struct Context {
 struct Step {
     std::string kind, name;
     bool changes_state = false;
+    Needs needs;
     std::string pointer;  // "/steps/2"
     std::function<void(io::Fields&)> describe;
     std::function<void(const io::JsonNode&, Plan&)> validate;
@@ -105,6 +118,7 @@ StepKind step_kind(std::string_view name, std::string_view summary)
                 auto step = std::make_shared<T>();
                 return Step{.kind = std::string(name),
                             .name = std::string(name),
+                            .needs = {},
                             .pointer = "",
                             .describe = [step](io::Fields& f) { step->describe(f); },
                             .validate = [step](const io::JsonNode& node,

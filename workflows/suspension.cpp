@@ -6,7 +6,7 @@ namespace sigmaflow::workflows {
 
 void Suspension::describe(io::Fields& f)
 {
-    f("particles", packing.particles, io::Integers{2, 10'000'000}, "-", "number of spheres");
+    f("particles", packing.particles, io::Integers{2, 1'000'000}, "-", "number of spheres");
     f("volume_fraction", packing.volume_fraction, io::above_to(0, 1), "-",
       "volume of the spheres over volume of the box, met exactly; at most random close packing, "
       "0.64 for equal spheres, 0.6528 for the default mixture");
@@ -44,15 +44,15 @@ void Suspension::check(const io::JsonNode& object)
 {
     if (const auto node = object.find("model")) io::check_model(model, *node);
     if (!packing.radii.empty()) check_radii(packing, object);
+    largest_volume_fraction = random_close_packing(packing_radii(packing));
     if (const auto value = object.find("volume_fraction"))
         check_volume_fraction(packing.volume_fraction, *value);
 }
 
 void Suspension::check_volume_fraction(double volume_fraction, const io::JsonNode& value) const
 {
-    const double limit = random_close_packing(packing_radii(packing));
-    if (volume_fraction > limit)
-        throw value.wrong("must be <= " + io::number_text(limit) +
+    if (volume_fraction > largest_volume_fraction)
+        throw value.wrong("must be <= " + io::number_text(largest_volume_fraction) +
                           ", random close packing of these spheres");
 }
 

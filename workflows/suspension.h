@@ -9,6 +9,7 @@ namespace sigmaflow::workflows {
 struct Suspension {
     PackingParameters packing;
     Model model;
+    double largest_volume_fraction = 0;  // random close packing of these spheres, set by check()
 
     void describe(io::Fields& f);
     /// Combinations that exclude each other. Errors: input, with the position in `object`.

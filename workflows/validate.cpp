@@ -6,6 +6,7 @@
 #include "io/particles_vtp.h"
 #include "io/run_file.h"
 #include "workflows/checkpoint.h"
+#include "workflows/forecast.h"
 #include "workflows/step_record.h"
 #include "workflows/workflow.h"
 
@@ -39,8 +40,11 @@ std::string describe_json(const Path& path)
     const io::JsonDocument document = io::JsonDocument::read(path);
     const io::JsonNode root = document.root();
     if (root.find("kind")) return io::describe_case(root);
-    if (root.find("steps"))
-        return "workflow, " + counted(read_workflow(document, path).steps.size(), "step");
+    if (root.find("steps")) {
+        const Workflow workflow = read_workflow(document, path);
+        return "workflow, " + counted(workflow.steps.size(), "step") + ", needs about " +
+               forecast_text(forecast(workflow));
+    }
     throw root.error("is neither a workflow (no \"steps\") nor a case (no \"kind\")");
 }
 

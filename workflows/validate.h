@@ -11,7 +11,8 @@
 
 namespace sigmaflow::workflows {
 
-/// One line: "flow.json: workflow, 6 steps". Errors: missing, input.
+/// One line: "flow.json: workflow, 6 steps, needs about 60 MB of memory and 9 MB on disk". Errors:
+/// missing, input.
 std::string validate_file(const std::filesystem::path& path);
 
 }

@@ -14,7 +14,7 @@ void Plan::need_state(const io::JsonNode& step) const
 
 const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool with_frames) const
 {
-    const auto usable = [&](const PlannedRun& run) { return run.has_frames || !with_frames; };
+    const auto usable = [&](const PlannedRun& run) { return run.frames > 0 || !with_frames; };
     const std::string wanted = with_frames ? "\"shear\"" : "\"shear\" or \"equilibrate\"";
     if (of.empty()) {
         const auto last = std::find_if(runs.rbegin(), runs.rend(), usable);
@@ -115,15 +115,19 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
     Plan plan{.suspension = *workflow.suspension,
               .step_name = "",
               .has_state = false,
+              .volume_fraction = 0,
               .changes_state = false,
+              .needs = {},
               .runs = {}};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         Step& step = workflow.steps[i];
         io::read_fields(nodes[i], step_fields(step));
         plan.step_name = step.name;
         plan.changes_state = false;
+        plan.needs = {};
         step.validate(nodes[i], plan);
         step.changes_state = plan.changes_state;
+        step.needs = plan.needs;
     }
     return workflow;
 }

@@ -70,6 +70,17 @@ TEST(Pairs, PositionsManyCellsAwayGiveTheSamePairs)
     EXPECT_EQ(keys(find_pairs(s, 0.5, fresh)), before);
 }
 
+TEST(Pairs, ABoxBeyondTheRangeOfIntegersHasItsPairs)
+{
+    State s;
+    s.box.length = Vec3(1e200, 1e197, 1e190);
+    s.position = {Vec3(1, 1, 1), Vec3(3.1, 1, 1), Vec3(5e199, 2e196, 3e189)};
+    s.radius = {1, 1, 1};
+    NeighbourList list;
+    list.update(s, 0.5);
+    EXPECT_EQ(keys(find_pairs(s, 0.5, list)), (std::vector<std::pair<int, int>>{{0, 1}}));
+}
+
 TEST(Pairs, TheListStaysCompleteWhileTheSuspensionFlows)
 {
     Random random(6);

@@ -139,6 +139,8 @@ TEST(JsonDocument, MessagesAreUtf8EvenAboutBytesThatAreNot)
 {
     EXPECT_EQ(message_of("  \x9C"), "f.json:1:3: not valid JSON: unexpected \"\uFFFD\"");
     EXPECT_EQ(message_of("[“a”]"), "f.json:1:2: /0: not valid JSON: unexpected \"“a”\"");
+    EXPECT_EQ(message_of("1e999\xC4\x08"),
+              "f.json:1:1: not valid JSON: the number 1e999 is too large");
 }
 
 // ------------------------------------------------------------------------------ conversions

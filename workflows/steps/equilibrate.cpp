@@ -47,7 +47,8 @@ struct Equilibrate {
                                                   io::number_text(4 * shearing.series_interval) +
                                                   ", got " + io::number_text(window));
         plan.changes_state = true;
-        plan.runs.push_back({plan.step_name, control, maximum_strain, false});
+        plan.needs.frames = 1;
+        plan.runs.push_back({plan.step_name, control, maximum_strain, 0});
     }
 
     /// Compares the last two windows of the series.

@@ -52,6 +52,7 @@ struct Pack {
                              " a, twice the distance up to which two of the largest spheres "
                              "interact");
         plan.has_state = plan.changes_state = true;
+        plan.volume_fraction = parameters.volume_fraction;
     }
 
     void run(Context& context) const

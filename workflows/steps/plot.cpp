@@ -38,7 +38,11 @@ struct Plot {
         size.describe(f);
     }
 
-    void validate(const io::JsonNode& node, Plan& plan) { plan.need_run(node, of, false); }
+    void validate(const io::JsonNode& node, Plan& plan)
+    {
+        plan.need_run(node, of, false);
+        plan.needs.plotted_pixels = size.pixels();
+    }
 
     /// The mean after the start-up with its standard error, and the start-up shaded.
     void mark_mean(const Run& run, const std::vector<double>& x_values, render::Plot& plot) const

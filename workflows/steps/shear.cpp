@@ -4,6 +4,8 @@
 #include "workflows/shearing.h"
 #include "workflows/steps.h"
 
+#include <cmath>
+
 namespace sigmaflow::workflows {
 
 namespace {
@@ -29,7 +31,8 @@ struct Shear {
                 "frame_interval",
                 "gives more than 99999 frames, the strain is " + io::number_text(strain));
         plan.changes_state = true;
-        plan.runs.push_back({plan.step_name, control, strain, true});
+        plan.needs.frames = std::floor(strain / frame_interval) + 2;
+        plan.runs.push_back({plan.step_name, control, strain, plan.needs.frames});
     }
 
     void run(Context& context) const
