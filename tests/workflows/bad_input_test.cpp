@@ -328,6 +328,21 @@ TEST_F(BadInput, DamagedVtkFilesCannotTakeTheProgramDown)
     EXPECT_GE(refused, copies / 3);
 }
 
+TEST_F(BadInput, ARunThatNoMachineCanHoldIsRefusedBeforeItStarts)
+{
+    write("w.json", R"({"suspension": {"particles": 1000000}, "steps": [{"step": "pack"},
+        {"step": "shear", "stress": 1, "strain": 10000, "frame_interval": 0.11,
+         "series_interval": 1}, {"step": "velocity_profile"}]})");
+    int code = 0;
+    const std::string said = run_limited({"run", "w.json", "--out", "result"}, code);
+    EXPECT_EQ(code, 65) << said;
+    EXPECT_NE(said.find("w.json:1:17: /suspension/particles: the step \"velocity_profile\" needs "
+                        "about 50 TB of memory, more than the "),
+              std::string::npos)
+        << said;
+    EXPECT_FALSE(std::filesystem::exists(folder / "result/pack"));
+}
+
 TEST_F(BadInput, ValidateSaysWhatGoodFilesAreAndNamesEveryBadOne)
 {
     write("w.json", R"({"suspension": {}, "steps": [{"step": "pack"}]})");
@@ -336,7 +351,8 @@ TEST_F(BadInput, ValidateSaysWhatGoodFilesAreAndNamesEveryBadOne)
     const Said said = run("validate a/work/w.json a/work/bad.json '" SIGMAFLOW_TEST_DATA
                           "/cases/t01_n50_stress.json' a/work/worse.json");
     EXPECT_EQ(said.exit_code, 65);
-    EXPECT_NE(said.out.find("w.json: workflow, 1 step, needs about "), std::string::npos) << said.out;
+    EXPECT_NE(said.out.find("w.json: workflow, 1 step, needs about "), std::string::npos)
+        << said.out;
     EXPECT_NE(said.out.find("case, 50 particles, imposed stress 10, trajectory to strain 0.04"),
               std::string::npos)
         << said.out;
