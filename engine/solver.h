@@ -72,7 +72,7 @@ public:
                                const std::vector<Velocities*>& x);
 
     /// What the next solve takes from earlier ones: factors of earlier matrices and their age. To
-    /// be restored after set_pattern. Errors: input (not of as many particles).
+    /// be restored after set_pattern. Errors: input (a factor of other particles or pairs).
     void save(ArchiveWriter& archive);
     void restore(ArchiveReader& archive);
 

@@ -1,4 +1,5 @@
 #include "engine/solver.h"
+#include "engine/archive.h"
 
 #include "engine/error.h"
 #include "engine/evaluation.h"
@@ -320,6 +321,28 @@ TEST(Residual, DoesNotRememberALargerProblem)
         multiply(small.matrix, small.b, fresh);
         return dot(fresh, fresh);
     }());
+}
+
+TEST(LaggedCholesky, AStoredFactorOfOtherPairsIsRefused)
+{
+    const Problem p = dense_problem(60);
+    ResistanceSolver solver({SolverKind::lagged_cholesky, 1e-8});
+    solver.set_pattern(60, p.candidates);
+    SlicedVector x;
+    solver.solve({p.matrix}, p.b, x);
+    ArchiveWriter stored;
+    solver.save(stored);
+    const auto restore = [&](int particles, std::vector<Candidate> candidates) {
+        ResistanceSolver other({SolverKind::lagged_cholesky, 1e-8});
+        other.set_pattern(particles, candidates);
+        ArchiveReader reader(stored.bytes());
+        other.restore(reader);
+    };
+    EXPECT_NO_THROW(restore(60, p.candidates));
+    std::vector<Candidate> fewer = p.candidates;
+    fewer.pop_back();
+    EXPECT_THROW(restore(60, fewer), Error);
+    EXPECT_THROW(restore(61, p.candidates), Error);
 }
 
 }

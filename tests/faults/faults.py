@@ -71,7 +71,9 @@ class Bench:
     def environment(self, out, **fault):
         if not fault:
             return dict(os.environ)
-        return {**os.environ, "LD_PRELOAD": str(self.options.library), "FAULT_FOLDER": str(out),
+        # the address sanitizer wants to be loaded first; it works behind this library, too
+        return {**os.environ, "ASAN_OPTIONS": "verify_asan_link_order=0",
+                "LD_PRELOAD": str(self.options.library), "FAULT_FOLDER": str(out),
                 **{f"FAULT_{name}": str(value) for name, value in fault.items()}}
 
     def differences(self, out):
