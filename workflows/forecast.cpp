@@ -28,8 +28,8 @@ constexpr double plotting = 15e6, plotted_pixel = 7.5;
 
 constexpr double particle_in_frame_on_disk = 1100, sample_on_disk = 620;
 constexpr double particle_of_step = 4000;  // last state and checkpoints
-constexpr double pixel_on_disk = 0.6;
-constexpr double files_of_step = 50e3;
+constexpr double drawn_pixel_on_disk = 0.6, plotted_pixel_on_disk = 0.1;
+constexpr double files_of_step = 200e3;  // tables, SVG
 }
 
 double memory_of(const Needs& needs, double particles)
@@ -48,8 +48,8 @@ double disk_of(const Needs& needs, double particles)
 {
     return needs.frames * particles * bytes::particle_in_frame_on_disk +
            needs.samples * bytes::sample_on_disk + particles * bytes::particle_of_step +
-           (needs.drawn_pixels + needs.plotted_pixels) * bytes::pixel_on_disk +
-           bytes::files_of_step;
+           needs.drawn_pixels * bytes::drawn_pixel_on_disk +
+           needs.plotted_pixels * bytes::plotted_pixel_on_disk + bytes::files_of_step;
 }
 
 /// What is on the disk already of the step that the checkpoint belongs to.
