@@ -79,6 +79,11 @@ void GrowingDataset::append(hid_t native, const void* values, hsize_t count)
     rows_ += count;
 }
 
+void GrowingDataset::close()
+{
+    if (!dataset_.close()) throw failed_write(where_);
+}
+
 Shape dataset_shape(const Hdf5Group& group, const std::string& name)
 {
     const Hdf5Handle dataset = open_dataset(group, name);

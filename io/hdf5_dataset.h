@@ -24,6 +24,8 @@ public:
         append(native_type<T>(), values.data(), values.size() / row_size_);
     }
     hsize_t rows() const { return rows_; }
+    /// Writes what is still in memory; the destructor does that too, but cannot report a failure.
+    void close();
 
 private:
     void append(hid_t native, const void* values, hsize_t count);
@@ -45,7 +47,9 @@ template <class T>
 void write_dataset(const Hdf5Group& group, const std::string& name, const std::vector<T>& values,
                    const std::string& unit)
 {
-    grow<T>(group, name, {}, unit).append(values);
+    GrowingDataset dataset = grow<T>(group, name, {}, unit);
+    dataset.append(values);
+    dataset.close();
 }
 
 Shape dataset_shape(const Hdf5Group& group, const std::string& name);

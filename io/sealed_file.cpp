@@ -10,6 +10,7 @@ namespace sigmaflow::io {
 namespace {
 
 constexpr std::string_view magic = "sigmaflow sealed file\n";
+constexpr const char* not_sealed = "is not a file that sigmaflow has sealed";
 
 }
 
@@ -29,7 +30,7 @@ std::string unsealed(std::string_view content, const Seal& seal, const std::stri
     const auto refuse = [&](const std::string& problem) {
         throw Error(ErrorKind::input, file, problem);
     };
-    if (!content.starts_with(magic)) refuse("is not a file that sigmaflow has sealed");
+    if (!content.starts_with(magic)) refuse(not_sealed);
     Digest digest{};
     if (content.size() < magic.size() + sizeof digest) refuse("is cut off");
     const std::string_view all = content.substr(0, content.size() - sizeof digest);
@@ -58,9 +59,16 @@ void write_sealed(const std::filesystem::path& path, const Seal& seal, std::stri
     write_file(path, sealed(seal, bytes));
 }
 
+std::string sealed_content(const std::filesystem::path& path)
+{
+    if (first_bytes(path, magic.size()) != magic)
+        throw Error(ErrorKind::input, path.string(), not_sealed);
+    return read_file(path, std::numeric_limits<std::size_t>::max());
+}
+
 std::string read_sealed(const std::filesystem::path& path, const Seal& seal)
 {
-    return unsealed(read_file(path, std::numeric_limits<std::size_t>::max()), seal, path.string());
+    return unsealed(sealed_content(path), seal, path.string());
 }
 
 }

@@ -18,6 +18,8 @@ struct Seal {
 
 void write_sealed(const std::filesystem::path& path, const Seal& seal, std::string_view bytes);
 std::string read_sealed(const std::filesystem::path& path, const Seal& seal);
+/// The whole file; one that is not sealed is refused before it is read.
+std::string sealed_content(const std::filesystem::path& path);
 
 /// The same in memory; `file` stands for the file in error messages.
 std::string sealed(const Seal& seal, std::string_view bytes);

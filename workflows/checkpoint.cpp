@@ -52,8 +52,7 @@ Checkpoint parse_checkpoint(std::string_view content, const std::string& file)
 
 Checkpoint read_checkpoint(const std::filesystem::path& path)
 {
-    return parse_checkpoint(io::read_file(path, std::numeric_limits<std::size_t>::max()),
-                            path.string());
+    return parse_checkpoint(io::sealed_content(path), path.string());
 }
 
 std::optional<Checkpoint> newest_checkpoint(const RunFolder& folder,

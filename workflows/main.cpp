@@ -27,7 +27,8 @@ constexpr const char* examples = R"(examples:
 a run that was interrupted or killed goes on with the same command
 
 exit codes: 0 complete, 3 interrupted (the same command goes on), 64 wrong command line, 65 invalid
-input, 66 input missing, 69 pictures could not be drawn, 70 numerical failure, 71 internal error, 73 cannot write, 74 disk full, 75 folder in use)";
+input, 66 input missing, 69 pictures could not be drawn, 70 numerical failure, 71 internal error,
+73 cannot write, 74 disk full, 75 folder in use)";
 
 /// Prints results; a full disk or a closed pipe must not pass for success.
 void print(const std::string& text)

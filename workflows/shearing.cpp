@@ -60,9 +60,9 @@ std::string details_text(const State& state, double shear_rate)
 
 void ShearingParameters::describe(io::Fields& f)
 {
-    f("stress", stress, io::above_to(0, 1e9), "sigma0",
+    f("stress", stress, io::between(1e-6, 1e9), "sigma0",
       "imposed shear stress; either this or rate");
-    f("rate", rate, io::above_to(0, 1e9), "rate0", "imposed shear rate; either this or stress");
+    f("rate", rate, io::between(1e-6, 1e9), "rate0", "imposed shear rate; either this or stress");
     f("scheme", scheme,
       io::Words<Scheme>{
           {"implicit", Scheme::implicit}, {"heun", Scheme::heun}, {"euler", Scheme::euler}},

@@ -69,11 +69,13 @@ std::string describe_vtp(const Path& path)
 /// A checkpoint or the record of a step.
 std::string describe_sealed(const Path& path)
 {
-    if (path.extension() == record_ending)
-        return "record of the finished step " + read_record(path).identity.name;
-    const Checkpoint checkpoint = read_checkpoint(path);
-    return "checkpoint of the step " + checkpoint.step.name + " at strain " +
-           rounded_text(checkpoint.strain) + ", written " + checkpoint.written;
+    return io::guarded(path, limits_for(path), [&] {
+        if (path.extension() == record_ending)
+            return "record of the finished step " + read_record(path).identity.name;
+        const Checkpoint checkpoint = read_checkpoint(path);
+        return "checkpoint of the step " + checkpoint.step.name + " at strain " +
+               rounded_text(checkpoint.strain) + ", written " + checkpoint.written;
+    });
 }
 
 /// What a file begins with decides, then its name.

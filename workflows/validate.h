@@ -3,7 +3,7 @@
 //
 // Recognised: workflows (JSON with "steps"), cases (JSON with "kind"), runs (HDF5), VTK polydata,
 // checkpoints and step records.
-// HDF5 and VTK files are read by a child process with limits (io/guarded.h), so that whatever they
+// All but JSON files are read by a child process with limits (io/guarded.h), so that whatever they
 // hold, this process survives and needs little memory.
 #pragma once
 #include <filesystem>

@@ -500,6 +500,8 @@ def main():
     parser.add_argument("--every", type=int, default=1, help="only every K-th call")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     options = parser.parse_args()
+    for number in (signal.SIGINT, signal.SIGHUP):  # a shell may have them ignored in the background
+        signal.signal(number, signal.SIG_DFL)
     options.program, options.library = options.program.resolve(), options.library.resolve()
     chosen = EXPERIMENTS if "all" in options.experiments else options.experiments
     good = [EXPERIMENTS[name](options) for name in chosen]

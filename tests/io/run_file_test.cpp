@@ -8,9 +8,29 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <chrono>
 #include <functional>
 #include <thread>
+
+namespace {
+
+long writes_left = -1;  // then one fails; negative: none
+
+}
+
+/// In front of that of the C library, for HDF5.
+extern "C" ssize_t pwrite(int file, const void* bytes, size_t count, off_t offset)
+{
+    if (writes_left-- == 0) {
+        errno = ENOSPC;
+        return -1;
+    }
+    return syscall(SYS_pwrite64, file, bytes, count, offset);
+}
 
 namespace sigmaflow::io {
 namespace {
@@ -216,6 +236,31 @@ TEST_P(FullDisk, IsAnErrorAndLeavesNoRunFile)
 INSTANTIATE_TEST_SUITE_P(Bytes, FullDisk,
                          testing::Values(0, 50, 1000, 5000, 20000, 60000, 100000, 150000, 200000,
                                          250000, 300000, 350000));
+
+// Unlike on a full disk, what comes after the failure succeeds.
+TEST(RunFile, ASingleWriteThatFailsIsAnErrorWhicheverItIs)
+{
+    const TemporaryFolder folder;
+    const std::vector<Frame> frames(4, random_frame(50, 30, 1));
+    const auto write = [&] {
+        write_run(folder / "run.h5", frames, random_series(20), frames.front().state);
+    };
+    for (long number = 0; number < 1000; ++number) {
+        writes_left = number;
+        try {
+            write();
+            ASSERT_GE(writes_left, 0) << "write " << number << " failed unnoticed";
+            writes_left = -1;
+            EXPECT_GT(number, 50);
+            return;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::no_space) << error.what();
+            EXPECT_FALSE(std::filesystem::exists(folder / "run.h5"));
+        }
+        writes_left = -1;
+    }
+    FAIL() << "more than 1000 writes";
+}
 
 TEST(RunFile, IsWrittenWhereTheDiskIsLargeEnough)  // the limit itself does no harm
 {

@@ -132,6 +132,10 @@ TEST_F(BadInput, CorpusIsRefusedAsExpected)
 
 TEST_F(BadInput, HugeAndDeepFilesAreRefusedEarly)
 {
+    fs::resize_file(write("huge.0", "sigmaflo"), 20'000'000'000);  // has no blocks on the disk
+    expect_refused({"validate", "huge.0"}, 65, "huge.0: is not a file that sigmaflow has sealed");
+    fs::resize_file(write("huger.0", "sigmaflow sealed file\n"), 20'000'000'000);
+    expect_refused({"validate", "huger.0"}, 65, "huger.0: cannot be read safely");
     fs::resize_file(write("huge.json", "["), 100'000'000);
     expect_refused_by_all("huge.json", 65,
                           "huge.json: must not be larger than 33554432 bytes, got");
