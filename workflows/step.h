@@ -31,6 +31,7 @@ class Keeper;
 struct PlannedRun {
     std::string name;
     Control control;
+    double volume_fraction = 0;
     double strain = 0;
     double frames = 0;  // that later steps can use
 };

@@ -11,6 +11,7 @@ std::span<const StepKind> step_kinds();
 StepKind pack_step();
 StepKind equilibrate_step();
 StepKind shear_step();
+StepKind flow_curve_step();
 StepKind velocity_profile_step();
 StepKind snapshot_step();
 StepKind plot_step();

@@ -44,14 +44,45 @@ namespace {
 
 constexpr std::size_t most_steps = 1000, longest_name = 64;
 
+bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
 bool is_name(const std::string& text)
 {
-    const auto good = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '_' || c == '-';
-    };
-    return !text.empty() && text.size() <= longest_name && text[0] != '-' &&
-           std::all_of(text.begin(), text.end(), good);
+    if (text.empty() || text.size() > longest_name || text[0] == '-') return false;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const char c = text[k];
+        // a point in a number: no name is that of a file
+        const bool decimal = c == '.' && k > 0 && k + 1 < text.size() && is_digit(text[k - 1]) &&
+                             is_digit(text[k + 1]);
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        if (!letter && !is_digit(c) && c != '_' && c != '-' && !decimal) return false;
+    }
+    return true;
+}
+
+/// What a step of the file says, or one of the steps that it stands for with a "sweep".
+struct StepText {
+    io::JsonNode node;
+    std::string swept = {};                  // name of the parameter
+    std::optional<io::JsonNode> value = {};  // of it
+};
+
+std::vector<StepText> unfolded(const io::JsonNode& node)
+{
+    const auto sweep = node.find("sweep");
+    if (!sweep) return {{node}};
+    const std::vector<std::string> names = sweep->keys();
+    if (names.size() != 1)
+        throw sweep->error(
+            "must have one parameter with a list of values, as {\"stress\": [1, 2]}");
+    if (node.has(names.front())) throw node.error_at_key(names.front(), "is in the sweep as well");
+    std::vector<StepText> result;
+    for (const io::JsonNode& value : sweep->member(names.front()).elements({1, most_steps}))
+        result.push_back({node, names.front(), value});
+    return result;
 }
 
 Step make_step(const io::JsonNode& node)
@@ -63,27 +94,55 @@ Step make_step(const io::JsonNode& node)
     return step;
 }
 
-/// Steps are named after their kind, the second one of a kind "<kind>_2" and so on, unless named.
-void name_steps(std::vector<Step>& steps, const std::vector<io::JsonNode>& nodes)
+/// Steps are named after their kind, the second one of a kind "<kind>_2" and so on, unless named;
+/// those of a sweep after the value, too: "<name>_0.5".
+void name_steps(std::vector<Step>& steps, const std::vector<StepText>& texts)
 {
     std::set<std::string> used;
-    for (const io::JsonNode& node : nodes) {
-        const auto given = node.find("name");
-        if (!given) continue;
-        const std::string name = given->text();
-        if (!is_name(name))
+    const auto base = [&](std::size_t i) {
+        const auto given = texts[i].node.find("name");
+        return given ? given->text() : steps[i].kind;
+    };
+    const auto with_value = [&](std::size_t i) {
+        return base(i) + "_" +
+               (texts[i].value->is_number() ? texts[i].value->shown() : texts[i].value->text());
+    };
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const auto given = texts[i].node.find("name");
+        if (!given && !texts[i].value) continue;
+        steps[i].name = texts[i].value ? with_value(i) : base(i);
+        if (given && !is_name(base(i)))
             throw given->wrong("must be 1 to 64 letters, digits, _ or -, not beginning with -");
-        if (!used.insert(name).second) throw given->wrong("must be different for every step");
+        if (!is_name(steps[i].name))
+            throw texts[i].value->wrong("must be a number or a word, without exponent");
+        if (!used.insert(steps[i].name).second)
+            throw(texts[i].value ? *texts[i].value : *given)
+                .wrong("must be different for every step");
     }
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        if (const auto given = nodes[i].find("name")) {
-            steps[i].name = given->text();
-            continue;
-        }
+        if (texts[i].value || texts[i].node.has("name")) continue;
         const std::string kind = steps[i].kind;
         for (int number = 2; !used.insert(steps[i].name).second; ++number)
             steps[i].name = kind + "_" + std::to_string(number);
     }
+}
+
+void read_step(Step& step, const StepText& text)
+{
+    const std::vector<io::Field> fields = step_fields(step);
+    const std::string name = step.name;  // given names are those of the file
+    io::read_fields(text.node, fields);
+    step.name = name;
+    if (!text.value) return;
+    std::vector<std::string_view> known;
+    for (const io::Field& field : fields) {
+        known.push_back(field.name);
+        if (field.name != text.swept || field.name == "step" || field.name == "name") continue;
+        field.read(*text.value);
+        return;
+    }
+    text.node.member("sweep").refuse_other_keys(known);
+    throw text.node.member("sweep").error("cannot be of " + io::in_quotes(text.swept));
 }
 
 std::vector<io::Field> workflow_fields(Workflow& workflow, std::string& schema)
@@ -109,9 +168,14 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
     if (workflow.name.empty()) workflow.name = default_name;
     workflow.suspension->check(root.member("suspension"));
 
-    const std::vector<io::JsonNode> nodes = root.member("steps").elements({1, most_steps});
-    for (const io::JsonNode& node : nodes) workflow.steps.push_back(make_step(node));
-    name_steps(workflow.steps, nodes);
+    std::vector<StepText> texts;
+    for (const io::JsonNode& node : root.member("steps").elements({1, most_steps}))
+        for (const StepText& text : unfolded(node)) texts.push_back(text);
+    if (texts.size() > most_steps)
+        throw root.member("steps").error("stands for more than " + std::to_string(most_steps) +
+                                         " steps, " + std::to_string(texts.size()));
+    for (const StepText& text : texts) workflow.steps.push_back(make_step(text.node));
+    name_steps(workflow.steps, texts);
     Plan plan{.suspension = *workflow.suspension,
               .step_name = "",
               .has_state = false,
@@ -119,13 +183,13 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
               .changes_state = false,
               .needs = {},
               .runs = {}};
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::size_t i = 0; i < texts.size(); ++i) {
         Step& step = workflow.steps[i];
-        io::read_fields(nodes[i], step_fields(step));
+        read_step(step, texts[i]);
         plan.step_name = step.name;
         plan.changes_state = false;
         plan.needs = {};
-        step.validate(nodes[i], plan);
+        step.validate(texts[i].node, plan);
         step.changes_state = plan.changes_state;
         step.needs = plan.needs;
     }
@@ -140,7 +204,15 @@ std::vector<io::Field> step_fields(Step& step)
     f("step", step.kind, std::vector<std::string_view>{step.kind}, "kind of the step").require();
     f("name", step.name, longest_name, "name of its files; default: the kind, then kind_2, ...");
     step.describe(f);
-    return f.list();
+    std::vector<io::Field> list = f.list();
+    list.push_back({.name = "sweep",
+                    .help =
+                        "{\"stress\": [0.5, 1, 2]}: this step once for each value of one of its "
+                        "parameters, one after the other, named \"<name>_0.5\" and so on",
+                    .kind = io::FieldKind::group,
+                    .read = [](const io::JsonNode&) {},  // unfolded before
+                    .write = [] { return nlohmann::ordered_json(); }});
+    return list;
 }
 
 Workflow read_workflow(const std::filesystem::path& path)
