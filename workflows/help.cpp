@@ -37,7 +37,7 @@ std::string fields_help(const std::vector<io::Field>& fields)
 {
     std::string text;
     for (const io::Field& field : fields) {
-        if (field.kind == io::FieldKind::group) {
+        if (!field.members.empty()) {
             text += "\n" + field.name + ": " + field.help + "\n" + fields_help(field.members);
             continue;
         }

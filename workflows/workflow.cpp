@@ -114,7 +114,8 @@ void name_steps(std::vector<Step>& steps, const std::vector<StepText>& texts)
         if (given && !is_name(base(i)))
             throw given->wrong("must be 1 to 64 letters, digits, _ or -, not beginning with -");
         if (!is_name(steps[i].name))
-            throw texts[i].value->wrong("must be a number or a word, without exponent");
+            throw texts[i].value->wrong(
+                "must be a number or a word that can be a part of the name of the step");
         if (!used.insert(steps[i].name).second)
             throw(texts[i].value ? *texts[i].value : *given)
                 .wrong("must be different for every step");

@@ -205,6 +205,45 @@ TEST_F(SmallRun, RunOutOfTimeIsUndecidedAndKeepsItsLastState)
     EXPECT_NEAR(io::read_series(folder / "out/short/shear/series.csv").back().time, 0.1, 1e-12);
 }
 
+TEST_F(SmallRun, FlowCurveHoldsTheMeansOfItsRunsAndWhatJams)
+{
+    write("curve.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.61},
+        "steps": [{"step": "pack"},
+                  {"step": "shear", "sweep": {"stress": [0.3, 0.6, 20]}, "strain": 0.3},
+                  {"step": "flow_curve", "width": 640, "height": 360}]})");
+    const Said said = run("run curve.json -q");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const Json steps = json("out/curve/summary.json")["steps"];
+    const Json curve = steps["flow_curve"]["curves"][0];
+    EXPECT_EQ(curve["volume_fraction"], 0.61);
+    EXPECT_EQ(curve["shape"], "arch-shaped");
+    EXPECT_EQ(curve["jamming_stress"], 20);
+    EXPECT_EQ(curve["slopes"].size(), 2u);
+    EXPECT_EQ(curve["slopes"][1]["trend"], "falls");
+
+    std::istringstream table(text_of(folder / "out/curve/flow_curve.csv"));
+    std::string line;
+    std::getline(table, line);
+    std::getline(table, line);
+    for (const char* stress : {"0.3", "0.6"}) {
+        std::getline(table, line);
+        const Json& means = steps["shear_" + std::string(stress)];
+        std::istringstream cells(line);
+        std::vector<std::string> cell(9);
+        for (std::string& one : cell) std::getline(cells, one, ',');
+        EXPECT_EQ(cell[1], stress);
+        EXPECT_DOUBLE_EQ(std::stod(cell[2]), means["shear_rate"]["mean"].get<double>());
+        EXPECT_DOUBLE_EQ(std::stod(cell[3]), means["shear_rate"]["standard_error"].get<double>());
+        EXPECT_NEAR(std::stod(cell[4]), means["viscosity"]["mean"].get<double>(), 1e-9);
+        EXPECT_EQ(cell[7], "flowing");
+    }
+    std::getline(table, line);
+    EXPECT_TRUE(line.starts_with("0.61,20,0,0,,,")) << line;
+    EXPECT_TRUE(line.ends_with(",jammed,shear_20")) << line;
+    for (const char* name : {"flow_curve.png", "flow_curve.svg", "flow_curve_viscosity.png"})
+        EXPECT_GT(std::filesystem::file_size(folder / "out/curve" / name), 1000u) << name;
+}
+
 TEST_F(SmallRun, JammedSuspensionIsAResult)
 {
     write("jam.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.61},

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 std::vector<std::filesystem::path> shipped_workflows()
 {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(SIGMAFLOW_WORKFLOWS))
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(SIGMAFLOW_WORKFLOWS))
         if (entry.path().extension() == ".json") files.push_back(entry.path());
     return files;
 }
@@ -27,7 +27,7 @@ std::vector<std::filesystem::path> shipped_workflows()
 TEST(Workflow, EveryShippedFileIsValid)
 {
     const auto files = shipped_workflows();
-    EXPECT_GE(files.size(), 2u);
+    EXPECT_GE(files.size(), 4u);
     for (const auto& file : files) EXPECT_NO_THROW(read_workflow(file)) << file;
 }
 
@@ -87,6 +87,27 @@ TEST(Workflow, StepsAreNamedAfterTheirKindAndNamesAreUnique)
     const Json resolved = workflow.resolved();
     EXPECT_EQ(resolved["steps"][4]["of"], "shear_3");
     EXPECT_EQ(resolved["steps"][5]["of"], "shear_2");  // the last run before it
+}
+
+TEST(Workflow, ASweepStandsForOneStepPerValue)
+{
+    const Workflow workflow = parse_workflow(R"({"suspension": {}, "steps": [{"step": "pack"},
+        {"step": "shear", "name": "up", "sweep": {"stress": [0.5, 1, 20]}, "strain": 2},
+        {"step": "shear", "sweep": {"displacement": [0.01, 0.005]}, "stress": 3},
+        {"step": "plot", "sweep": {"y": ["viscosity", "contact_number"]}, "of": "up_0.5"}]})",
+                                             "test.json");
+    std::vector<std::string> names;
+    for (const Step& step : workflow.steps) names.push_back(step.name);
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"pack", "up_0.5", "up_1", "up_20", "shear_0.01",
+                                        "shear_0.005", "plot_viscosity", "plot_contact_number"}));
+    const Json steps = workflow.resolved()["steps"];
+    EXPECT_EQ(steps[1]["stress"], 0.5);
+    EXPECT_EQ(steps[3]["stress"], 20);
+    EXPECT_EQ(steps[3]["strain"], 2);
+    EXPECT_EQ(steps[5]["displacement"], 0.005);
+    EXPECT_EQ(steps[7]["y"], "contact_number");
+    EXPECT_FALSE(steps[1].contains("sweep"));
 }
 
 TEST(Workflow, ARateCanBeImposedWithFixedStiffness)

@@ -293,7 +293,7 @@ std::vector<Mistake> mistakes_of_the_steps()
         {"negative_stress",
          step("{\"step\": \"shear\",\n     \"stress\": @-1}"),
          "/steps/1/stress",
-         {"must be > 0", "[sigma0], got -1"}},
+         {"must be >= 1e-06", "[sigma0], got -1"}},
         {"stress_and_rate",
          step("{\"step\": \"shear\", \"stress\": 2, @\"rate\": 1}"),
          "/steps/1/rate",
@@ -403,13 +403,75 @@ std::vector<Mistake> mistakes_of_the_steps()
          step("{\"step\": \"pack\", \"name\": \"a\"},\n {\"step\": \"pack\", \"name\": @\"a\"}"),
          "/steps/2/name",
          {"must be different for every step, got \"a\""}},
+        {"name_of_a_file",
+         step("{\"step\": \"pack\", \"name\": @\"run.h5\"}"),
+         "/steps/1/name",
+         {"letters, digits, _ or -"}},
+    };
+}
+
+std::vector<Mistake> mistakes_of_sweeps()
+{
+    const auto shear = [](const std::string& more) {
+        return step("{\"step\": \"shear\", " + more + "}");
+    };
+    return {
+        {"sweep_value",
+         shear("\"sweep\": {\"stress\": [1, @-2]}"),
+         "/steps/1/sweep/stress/1",
+         {"must be >= 1e-06 and <= 1e+09 [sigma0], got -2"}},
+        {"sweep_type",
+         shear("\"sweep\": {\"stress\": @2}"),
+         "/steps/1/sweep/stress",
+         {"must be an array"}},
+        {"sweep_of_nothing",
+         shear("\"sweep\": {\"stress\": @[]}"),
+         "/steps/1/sweep/stress",
+         {"1 to 1000"}},
+        {"sweep_unknown",
+         shear("\"stress\": 1, \"sweep\": {@\"strian\": [1]}"),
+         "/steps/1/sweep/strian",
+         {"did you mean \"strain\"?"}},
+        {"sweep_of_kinds",
+         step("{@\"step\": \"shear\", \"stress\": 1, \"sweep\": {\"step\": [\"pack\"]}}"),
+         "/steps/1/step",
+         {"is in the sweep as well"}},
+        {"sweep_of_names",
+         shear("\"stress\": 1, \"sweep\": @{\"name\": [\"a\"]}"),
+         "/steps/1/sweep",
+         {"cannot be of \"name\""}},
+        {"sweep_of_two",
+         shear("\"sweep\": @{\"stress\": [1], \"strain\": [1]}"),
+         "/steps/1/sweep",
+         {"one parameter with a list of values"}},
+        {"sweep_and_value",
+         shear("@\"stress\": 1, \"sweep\": {\"stress\": [1]}"),
+         "/steps/1/stress",
+         {"is in the sweep as well"}},
+        {"sweep_twice",
+         shear("\"sweep\": {\"stress\": [1, 2, @1]}"),
+         "/steps/1/sweep/stress/2",
+         {"must be different for every step, got 1"}},
+        {"sweep_exponent",
+         shear("\"sweep\": {\"stress\": [@1e+1]}"),
+         "/steps/1/sweep/stress/0",
+         {"must be a number or a word that can be a part of the name"}},
+        {"flow_curve_without_runs",
+         step("@{\"step\": \"flow_curve\"}"),
+         "/steps/1",
+         {"needs steps \"shear\" at imposed stresses before it"}},
+        {"flow_curve_of_one_stress",
+         after_shear("@{\"step\": \"flow_curve\"}"),
+         "/steps/2",
+         {"needs runs at two stresses"}},
     };
 }
 
 std::vector<Mistake> all_mistakes()
 {
     std::vector<Mistake> all = mistakes_of_syntax();
-    for (const auto& more : {mistakes_of_the_suspension(), mistakes_of_the_steps()})
+    for (const auto& more :
+         {mistakes_of_the_suspension(), mistakes_of_the_steps(), mistakes_of_sweeps()})
         all.insert(all.end(), more.begin(), more.end());
     return all;
 }
