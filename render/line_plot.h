@@ -57,6 +57,9 @@ struct Plot {
     Legend legend = Legend::best;
 };
 
+/// The colours that series and bands without one of their own take in turns.
+Colour cycle_colour(std::size_t index);
+
 Image render_plot(const Plot& plot);
 std::string plot_svg(const Plot& plot);
 

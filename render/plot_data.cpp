@@ -153,17 +153,22 @@ void draw_one(Drawing& drawing, const Series& series, Colour colour, const PlotL
 
 }
 
+Colour cycle_colour(std::size_t index)
+{
+    return cycle[index % cycle.size()];
+}
+
 Colour series_colour(const Plot& plot, std::size_t index)
 {
     if (plot.series[index].colour) return *plot.series[index].colour;
     std::size_t earlier = 0;  // series with a colour of their own use none of the cycle
     for (std::size_t i = 0; i < index; ++i) earlier += !plot.series[i].colour.has_value();
-    return cycle[earlier % cycle.size()];
+    return cycle_colour(earlier);
 }
 
 Colour band_colour(const Plot& plot, std::size_t index)
 {
-    return plot.bands[index].colour.value_or(cycle[index % cycle.size()]);
+    return plot.bands[index].colour.value_or(cycle_colour(index));
 }
 
 void draw_sample(Drawing& drawing, const Series& series, Colour colour, Point centre,

@@ -229,19 +229,42 @@ TEST_F(SmallRun, FlowCurveHoldsTheMeansOfItsRunsAndWhatJams)
         std::getline(table, line);
         const Json& means = steps["shear_" + std::string(stress)];
         std::istringstream cells(line);
-        std::vector<std::string> cell(9);
+        std::vector<std::string> cell(11);
         for (std::string& one : cell) std::getline(cells, one, ',');
-        EXPECT_EQ(cell[1], stress);
-        EXPECT_DOUBLE_EQ(std::stod(cell[2]), means["shear_rate"]["mean"].get<double>());
-        EXPECT_DOUBLE_EQ(std::stod(cell[3]), means["shear_rate"]["standard_error"].get<double>());
-        EXPECT_NEAR(std::stod(cell[4]), means["viscosity"]["mean"].get<double>(), 1e-9);
-        EXPECT_EQ(cell[7], "flowing");
+        EXPECT_EQ(cell[1], "stress");
+        EXPECT_EQ(cell[2], stress);
+        EXPECT_EQ(cell[3], "0");
+        EXPECT_DOUBLE_EQ(std::stod(cell[4]), means["shear_rate"]["mean"].get<double>());
+        EXPECT_DOUBLE_EQ(std::stod(cell[5]), means["shear_rate"]["standard_error"].get<double>());
+        EXPECT_NEAR(std::stod(cell[6]), means["viscosity"]["mean"].get<double>(), 1e-9);
+        EXPECT_EQ(cell[9], "flowing");
     }
     std::getline(table, line);
-    EXPECT_TRUE(line.starts_with("0.61,20,0,0,,,")) << line;
+    EXPECT_TRUE(line.starts_with("0.61,stress,20,0,0,0,,,")) << line;
     EXPECT_TRUE(line.ends_with(",jammed,shear_20")) << line;
     for (const char* name : {"flow_curve.png", "flow_curve.svg", "flow_curve_viscosity.png"})
         EXPECT_GT(std::filesystem::file_size(folder / "out/curve" / name), 1000u) << name;
+}
+
+TEST_F(SmallRun, FlowCurveShowsImposedRatesBesideImposedStresses)
+{
+    write("both.json", R"({"suspension": {"particles": 30, "volume_fraction": 0.4, "size_ratio": 1,
+                                          "model": {"stiffness_scale": "fixed"}},
+        "steps": [{"step": "pack"},
+                  {"step": "shear", "sweep": {"stress": [1, 2]}, "strain": 0.2},
+                  {"step": "shear", "name": "rate", "sweep": {"rate": [0.2, 0.1]}, "strain": 0.2},
+                  {"step": "flow_curve", "width": 640, "height": 360}]})");
+    const Said said = run("run both.json -q");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const std::string table = text_of(folder / "out/both/flow_curve.csv");
+    EXPECT_NE(table.find("\n0.4,rate,"), std::string::npos) << table;
+    EXPECT_NE(table.find(",0.1,0,"), std::string::npos) << table;  // exactly what was imposed
+    EXPECT_LT(table.find("rate_0.1\n"), table.find("rate_0.2\n"));
+    EXPECT_NE(text_of(folder / "out/both/flow_curve_viscosity.svg").find("imposed rate"),
+              std::string::npos);
+    const Json curves = json("out/both/summary.json")["steps"]["flow_curve"]["curves"];
+    ASSERT_EQ(curves.size(), 1u);
+    EXPECT_EQ(curves[0]["slopes"].size(), 1u);
 }
 
 TEST_F(SmallRun, JammedSuspensionIsAResult)

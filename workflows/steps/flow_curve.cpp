@@ -1,4 +1,4 @@
-// Step "flow_curve": shear rate against shear stress from all stress-controlled runs before it.
+// Step "flow_curve": shear rate against shear stress from all runs before it.
 #include "engine/flow_curve.h"
 #include "engine/statistics.h"
 #include "io/atomic_file.h"
@@ -16,67 +16,81 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A point of a flow curve and the run behind it.
+/// The mean flow of one run.
 struct Measured {
-    const Run* run = nullptr;
-    FlowPoint point;
-    Estimate contact_number;
+    std::string run;
+    bool imposed_rate = false, jammed = false;
+    Estimate stress, rate, contact_number;  // what is imposed has no error
+
+    double viscosity() const { return stress.mean / rate.mean; }
+    double viscosity_error() const
+    {
+        return std::abs(viscosity()) *
+               std::hypot(stress.standard_error / stress.mean, rate.standard_error / rate.mean);
+    }
+    FlowPoint point() const { return {stress.mean, rate.mean, rate.standard_error, jammed}; }
 };
 
-/// Points by stress, for each volume fraction as it was asked for.
-using Curves = std::map<double, std::vector<Measured>>;
+/// One volume fraction, as it was asked for; by the imposed stress or rate.
+struct Curve {
+    std::map<double, Measured> by_stress, by_rate;
+};
+using Curves = std::map<double, Curve>;
 
-Measured measured(const Run& run, double stress)
+Measured measured(const Run& run)
 {
     const std::span<const Sample> samples = stationary_part(run);
-    const Estimate rate = estimate_mean(column(samples, &Sample::shear_rate));
-    FlowPoint point{.stress = stress,
-                    .shear_rate = run.jammed ? 0 : rate.mean,
-                    .standard_error = run.jammed ? 0 : rate.standard_error,
-                    .jammed = run.jammed};
-    return {&run, point, estimate_mean(column(samples, &Sample::contact_number))};
+    const auto mean = [&](double Sample::*value) { return estimate_mean(column(samples, value)); };
+    Measured result{.run = run.name,
+                    .jammed = run.jammed,
+                    .stress = mean(&Sample::shear_stress),
+                    .rate = mean(&Sample::shear_rate),
+                    .contact_number = mean(&Sample::contact_number)};
+    if (const auto* rate = std::get_if<ImposedRate>(&run.control)) {
+        result.imposed_rate = true;
+        result.rate = {.mean = rate->value};
+    } else {
+        result.stress = {.mean = std::get<ImposedStress>(run.control).value};
+        if (run.jammed) result.rate = {};
+    }
+    return result;
 }
 
-/// Of two runs at one stress the later one counts.
+/// Of two runs at one stress or rate the later one counts.
 Curves curves_of(const Context& context, const std::vector<PlannedRun>& planned)
 {
     Curves curves;
     for (const PlannedRun& one : planned) {
-        const double stress = std::get<ImposedStress>(one.control).value;
-        auto& curve = curves[one.volume_fraction];
-        std::erase_if(curve, [&](const Measured& m) { return m.point.stress == stress; });
-        curve.push_back(measured(context.run(one.name), stress));
+        Measured m = measured(context.run(one.name));
+        Curve& curve = curves[one.volume_fraction];
+        if (m.imposed_rate)
+            curve.by_rate[m.rate.mean] = std::move(m);
+        else
+            curve.by_stress[m.stress.mean] = std::move(m);
     }
-    for (auto& [volume_fraction, curve] : curves)
-        std::sort(curve.begin(), curve.end(), [](const Measured& a, const Measured& b) {
-            return a.point.stress < b.point.stress;
-        });
     return curves;
+}
+
+std::string row(double volume_fraction, const Measured& m)
+{
+    std::string text = io::number_text(volume_fraction) + (m.imposed_rate ? ",rate" : ",stress");
+    for (double value : {m.stress.mean, m.stress.standard_error, m.rate.mean, m.rate.standard_error,
+                         m.viscosity(), m.viscosity_error(), m.contact_number.mean}) {
+        text += ',';
+        if (std::isfinite(value)) text += io::number_text(value);  // jammed: no viscosity
+    }
+    return text + (m.jammed ? ",jammed," : ",flowing,") + m.run + "\n";
 }
 
 std::string csv_text(const Curves& curves)
 {
     std::string text =
         "# stress [sigma0], shear_rate [rate0], viscosity [eta0]; errors are standard errors\n"
-        "volume_fraction,stress,shear_rate,shear_rate_error,viscosity,viscosity_error,"
-        "contact_number,outcome,run\n";
+        "volume_fraction,control,stress,stress_error,shear_rate,shear_rate_error,viscosity,"
+        "viscosity_error,contact_number,outcome,run\n";
     for (const auto& [volume_fraction, curve] : curves)
-        for (const auto& [run, point, contacts] : curve) {
-            const double viscosity = point.stress / point.shear_rate;
-            const double error = viscosity * point.standard_error / std::abs(point.shear_rate);
-            text += io::number_text(volume_fraction);
-            const auto add = [&](double value) {
-                text += ',';
-                if (std::isfinite(value)) text += io::number_text(value);  // jammed: empty
-            };
-            add(point.stress);
-            add(point.shear_rate);
-            add(point.standard_error);
-            add(viscosity);
-            add(error);
-            add(contacts.mean);
-            text += (point.jammed ? ",jammed," : ",flowing,") + run->name + "\n";
-        }
+        for (const auto* points : {&curve.by_stress, &curve.by_rate})
+            for (const auto& [imposed, m] : *points) text += row(volume_fraction, m);
     return text;
 }
 
@@ -88,18 +102,30 @@ std::string label(double volume_fraction, const CurveAnalysis& analysis)
     return text;
 }
 
-render::Series empty_series(const std::string& label)
+/// Viscosity against rate, or rate against stress; what has no place on logarithmic axes is left
+/// out.
+render::Series drawn(const std::map<double, Measured>& points, bool viscosity,
+                     const std::string& label, std::optional<render::Colour> colour = {})
 {
     render::Series series;
     series.label = label;
     series.marker = render::Marker::circle;
+    series.colour = colour;
+    for (const auto& [imposed, m] : points) {
+        if (m.jammed || !(m.rate.mean > 0) || !(m.stress.mean > 0)) continue;
+        const Estimate& x = viscosity ? m.rate : m.stress;
+        series.x.push_back(x.mean);
+        series.x_error.push_back(x.standard_error);
+        series.y.push_back(viscosity ? m.viscosity() : m.rate.mean);
+        series.y_error.push_back(viscosity ? m.viscosity_error() : m.rate.standard_error);
+    }
     return series;
 }
 
 struct FlowCurve {
     double confidence = 0.95;
     PictureSize size;
-    std::vector<PlannedRun> runs;  // under an imposed stress, known when the step is validated
+    std::vector<PlannedRun> runs;  // of steps "shear", known when the step is validated
 
     void describe(io::Fields& f)
     {
@@ -111,12 +137,12 @@ struct FlowCurve {
     void validate(const io::JsonNode& node, Plan& plan)
     {
         std::map<double, std::vector<double>> stresses;  // by volume fraction
-        for (const PlannedRun& run : plan.runs)
+        for (const PlannedRun& run : plan.runs) {
+            if (run.frames == 0) continue;  // equilibrate
+            runs.push_back(run);
             if (const auto* stress = std::get_if<ImposedStress>(&run.control))
-                if (run.frames > 0) {  // a step "shear"
-                    stresses[run.volume_fraction].push_back(stress->value);
-                    runs.push_back(run);
-                }
+                stresses[run.volume_fraction].push_back(stress->value);
+        }
         for (auto& [volume_fraction, list] : stresses) {
             std::sort(list.begin(), list.end());
             if (list.front() == list.back())
@@ -168,26 +194,27 @@ struct FlowCurve {
         viscosities.y.title = "viscosity $η$/$η$_{0}";
         context.results["confidence"] = confidence;
         auto& list = context.results["curves"] = Json::array();
+        std::size_t number = 0;
         for (const auto& [volume_fraction, curve] : curves) {
-            std::vector<FlowPoint> points;
-            for (const Measured& m : curve) points.push_back(m.point);
-            const CurveAnalysis analysis = analyse_flow_curve(points, confidence);
-            list.push_back(curve_json(volume_fraction, analysis));
-            render::Series rate = empty_series(label(volume_fraction, analysis));
-            render::Series viscosity = empty_series("$ϕ$ = " + short_number(volume_fraction));
-            for (const FlowPoint& p : points) {
-                if (p.jammed || !(p.shear_rate > 0)) continue;  // no place on logarithmic axes
-                rate.x.push_back(p.stress);
-                rate.y.push_back(p.shear_rate);
-                rate.y_error.push_back(p.standard_error);
-                viscosity.x.push_back(p.shear_rate);
-                viscosity.x_error.push_back(p.standard_error);
-                viscosity.y.push_back(p.stress / p.shear_rate);
-                viscosity.y_error.push_back(p.stress * p.standard_error /
-                                            (p.shear_rate * p.shear_rate));
+            const render::Colour colour = render::cycle_colour(number++);
+            const std::string name = "$ϕ$ = " + short_number(volume_fraction);
+            if (curve.by_stress.size() > 1) {
+                std::vector<FlowPoint> points;
+                for (const auto& [stress, m] : curve.by_stress) points.push_back(m.point());
+                const CurveAnalysis analysis = analyse_flow_curve(points, confidence);
+                list.push_back(curve_json(volume_fraction, analysis));
+                rates.series.push_back(
+                    drawn(curve.by_stress, false, label(volume_fraction, analysis), colour));
+                viscosities.series.push_back(drawn(curve.by_stress, true, name, colour));
             }
-            rates.series.push_back(std::move(rate));
-            viscosities.series.push_back(std::move(viscosity));
+            if (curve.by_rate.empty()) continue;
+            for (render::Plot* plot : {&rates, &viscosities}) {
+                render::Series crosses =
+                    drawn(curve.by_rate, plot == &viscosities, name + ", imposed rate", colour);
+                crosses.line = render::Line::none;
+                crosses.marker = render::Marker::cross;
+                plot->series.push_back(std::move(crosses));
+            }
         }
         write_plot(context, context.step_name, rates);
         write_plot(context, context.step_name + "_viscosity", viscosities);
