@@ -38,18 +38,39 @@ std::vector<FlowPoint> usable(std::span<const FlowPoint> points)
     return sorted;
 }
 
-CurveShape shape_of(const std::vector<Slope>& slopes, bool jams)
+Slope slope_between(const FlowPoint& a, const FlowPoint& b, double z)
 {
-    const auto is = [&](Trend trend) {
-        return [trend](const Slope& s) { return s.trend == trend; };
-    };
-    const auto falls = std::find_if(slopes.begin(), slopes.end(), is(Trend::falls));
-    if (jams) return CurveShape::arch;
-    if (falls == slopes.end())
-        return std::all_of(slopes.begin(), slopes.end(), is(Trend::rises)) ? CurveShape::continuous
-                                                                           : CurveShape::undecided;
-    return std::any_of(falls, slopes.end(), is(Trend::rises)) ? CurveShape::s_shaped
-                                                              : CurveShape::undecided;
+    const double width = b.stress - a.stress;
+    Slope s{.from = a.stress, .to = b.stress, .slope = (b.shear_rate - a.shear_rate) / width};
+    const double error = z * std::hypot(a.standard_error, b.standard_error) / width;
+    s.lower = s.slope - error;
+    s.upper = s.slope + error;
+    s.trend = s.lower > 0 ? Trend::rises : s.upper < 0 ? Trend::falls : Trend::unknown;
+    return s;
+}
+
+/// A fall by more of its errors comes first.
+bool is_more_certain(const Slope& a, const Slope& b)
+{
+    return a.slope * (b.upper - b.lower) < b.slope * (a.upper - a.lower);
+}
+
+/// Sets the most significant fall; true if the rate rises again from the end of some fall.
+bool find_falls(const std::vector<FlowPoint>& curve, double z, std::optional<Slope>& fall)
+{
+    bool rises_again = false;
+    for (std::size_t j = 1; j < curve.size(); ++j) {
+        bool falls = false;
+        for (std::size_t i = 0; i < j; ++i) {
+            const Slope s = slope_between(curve[i], curve[j], z);
+            if (s.trend != Trend::falls) continue;
+            falls = true;
+            if (!fall || is_more_certain(s, *fall)) fall = s;
+        }
+        for (std::size_t k = j + 1; falls && k < curve.size(); ++k)
+            rises_again |= slope_between(curve[j], curve[k], z).trend == Trend::rises;
+    }
+    return rises_again;
 }
 
 }
@@ -91,18 +112,19 @@ CurveAnalysis analyse_flow_curve(std::span<const FlowPoint> points, double confi
         result.shape = CurveShape::arch;
         return result;
     }
-    const double z = two_sided_quantile((1 - confidence) / static_cast<double>(curve.size() - 1));
-    for (std::size_t k = 1; k < curve.size(); ++k) {
-        const FlowPoint &a = curve[k - 1], &b = curve[k];
-        const double width = b.stress - a.stress;
-        Slope s{.from = a.stress, .to = b.stress, .slope = (b.shear_rate - a.shear_rate) / width};
-        const double error = z * std::hypot(a.standard_error, b.standard_error) / width;
-        s.lower = s.slope - error;
-        s.upper = s.slope + error;
-        s.trend = s.lower > 0 ? Trend::rises : s.upper < 0 ? Trend::falls : Trend::unknown;
-        result.slopes.push_back(s);
-    }
-    result.shape = shape_of(result.slopes, result.jams);
+    const auto points_used = static_cast<double>(curve.size());
+    const double z = two_sided_quantile((1 - confidence) / (points_used * (points_used - 1) / 2));
+    for (std::size_t k = 1; k < curve.size(); ++k)
+        result.slopes.push_back(slope_between(curve[k - 1], curve[k], z));
+    const bool rises_again = find_falls(curve, z, result.fall);
+    const bool rises = std::all_of(result.slopes.begin(), result.slopes.end(),
+                                   [](const Slope& s) { return s.trend == Trend::rises; });
+    if (result.jams)
+        result.shape = CurveShape::arch;
+    else if (rises_again)
+        result.shape = CurveShape::s_shaped;
+    else if (rises)
+        result.shape = CurveShape::continuous;
     return result;
 }
 

@@ -158,19 +158,22 @@ struct FlowCurve {
         plan.needs.plotted_pixels = size.pixels();
     }
 
+    static Json slope_json(const Slope& s)
+    {
+        static constexpr const char* trends[] = {"rises", "falls", "unknown"};
+        return {{"from_stress", s.from},
+                {"to_stress", s.to},
+                {"slope", s.slope},
+                {"confidence_interval", {s.lower, s.upper}},
+                {"trend", trends[static_cast<int>(s.trend)]}};
+    }
+
     static Json curve_json(double volume_fraction, const CurveAnalysis& analysis)
     {
-        Json json = {{"volume_fraction", volume_fraction},
-                     {"shape", shape_name(analysis.shape)},
-                     {"slopes", Json::array()}};
+        Json json = {{"volume_fraction", volume_fraction}, {"shape", shape_name(analysis.shape)}};
         if (analysis.jams) json["jamming_stress"] = analysis.jamming_stress;
-        static constexpr const char* trends[] = {"rises", "falls", "unknown"};
-        for (const Slope& s : analysis.slopes)
-            json["slopes"].push_back({{"from_stress", s.from},
-                                      {"to_stress", s.to},
-                                      {"slope", s.slope},
-                                      {"confidence_interval", {s.lower, s.upper}},
-                                      {"trend", trends[static_cast<int>(s.trend)]}});
+        if (analysis.fall) json["most_certain_fall"] = slope_json(*analysis.fall);
+        for (const Slope& s : analysis.slopes) json["slopes"].push_back(slope_json(s));
         return json;
     }
 
