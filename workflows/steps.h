@@ -12,6 +12,7 @@ StepKind pack_step();
 StepKind equilibrate_step();
 StepKind shear_step();
 StepKind flow_curve_step();
+StepKind stability_step();
 StepKind velocity_profile_step();
 StepKind snapshot_step();
 StepKind plot_step();

@@ -1,8 +1,7 @@
 // Step "flow_curve": shear rate against shear stress from all runs before it.
 #include "engine/flow_curve.h"
-#include "engine/statistics.h"
 #include "io/atomic_file.h"
-#include "workflows/averages.h"
+#include "workflows/measured_curves.h"
 #include "workflows/pictures.h"
 #include "workflows/steps.h"
 
@@ -15,61 +14,6 @@ namespace sigmaflow::workflows {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The mean flow of one run.
-struct Measured {
-    std::string run;
-    bool imposed_rate = false, jammed = false;
-    Estimate stress, rate, contact_number;  // what is imposed has no error
-
-    double viscosity() const { return stress.mean / rate.mean; }
-    double viscosity_error() const
-    {
-        return std::abs(viscosity()) *
-               std::hypot(stress.standard_error / stress.mean, rate.standard_error / rate.mean);
-    }
-    FlowPoint point() const { return {stress.mean, rate.mean, rate.standard_error, jammed}; }
-};
-
-/// One volume fraction, as it was asked for; by the imposed stress or rate.
-struct Curve {
-    std::map<double, Measured> by_stress, by_rate;
-};
-using Curves = std::map<double, Curve>;
-
-Measured measured(const Run& run)
-{
-    const std::span<const Sample> samples = stationary_part(run);
-    const auto mean = [&](double Sample::*value) { return estimate_mean(column(samples, value)); };
-    Measured result{.run = run.name,
-                    .jammed = run.jammed,
-                    .stress = mean(&Sample::shear_stress),
-                    .rate = mean(&Sample::shear_rate),
-                    .contact_number = mean(&Sample::contact_number)};
-    if (const auto* rate = std::get_if<ImposedRate>(&run.control)) {
-        result.imposed_rate = true;
-        result.rate = {.mean = rate->value};
-    } else {
-        result.stress = {.mean = std::get<ImposedStress>(run.control).value};
-        if (run.jammed) result.rate = {};
-    }
-    return result;
-}
-
-/// Of two runs at one stress or rate the later one counts.
-Curves curves_of(const Context& context, const std::vector<PlannedRun>& planned)
-{
-    Curves curves;
-    for (const PlannedRun& one : planned) {
-        Measured m = measured(context.run(one.name));
-        Curve& curve = curves[one.volume_fraction];
-        if (m.imposed_rate)
-            curve.by_rate[m.rate.mean] = std::move(m);
-        else
-            curve.by_stress[m.stress.mean] = std::move(m);
-    }
-    return curves;
-}
 
 std::string row(double volume_fraction, const Measured& m)
 {
@@ -122,6 +66,16 @@ render::Series drawn(const std::map<double, Measured>& points, bool viscosity,
     return series;
 }
 
+/// Rising curves leave no corner free for a long legend: room above them for its lines.
+void make_room(render::Plot& plot)
+{
+    double highest = 0;
+    for (const render::Series& series : plot.series)
+        for (double y : series.y) highest = std::max(highest, y);
+    if (highest > 0)
+        plot.y.maximum = highest * std::pow(10, 0.15 * static_cast<double>(plot.series.size()));
+}
+
 struct FlowCurve {
     double confidence = 0.95;
     PictureSize size;
@@ -136,25 +90,7 @@ struct FlowCurve {
 
     void validate(const io::JsonNode& node, Plan& plan)
     {
-        std::map<double, std::vector<double>> stresses;  // by volume fraction
-        for (const PlannedRun& run : plan.runs) {
-            if (run.frames == 0) continue;  // equilibrate
-            runs.push_back(run);
-            if (const auto* stress = std::get_if<ImposedStress>(&run.control))
-                stresses[run.volume_fraction].push_back(stress->value);
-        }
-        for (auto& [volume_fraction, list] : stresses) {
-            std::sort(list.begin(), list.end());
-            if (list.front() == list.back())
-                throw node.error(
-                    "needs runs at two stresses at least, there is only one at the "
-                    "volume fraction " +
-                    io::number_text(volume_fraction));
-        }
-        if (stresses.empty())
-            throw node.error(
-                "needs steps \"shear\" at imposed stresses before it, e.g. with "
-                "\"sweep\": {\"stress\": [0.5, 1, 2]}");
+        runs = runs_for_curves(node, plan);
         plan.needs.plotted_pixels = size.pixels();
     }
 
@@ -219,6 +155,7 @@ struct FlowCurve {
                 plot->series.push_back(std::move(crosses));
             }
         }
+        make_room(rates);
         write_plot(context, context.step_name, rates);
         write_plot(context, context.step_name + "_viscosity", viscosities);
     }
