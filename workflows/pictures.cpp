@@ -34,6 +34,14 @@ void PictureSize::describe(io::Fields& f)
     f("height", height, io::Integers{64, 16384}, "pixels", "height of the picture");
 }
 
+render::Plot PictureSize::plot() const
+{
+    render::Plot plot;
+    plot.width = width;
+    plot.height = height;
+    return plot;
+}
+
 std::string short_number(double value)
 {
     char text[32];

@@ -22,6 +22,8 @@ struct PictureSize {
 
     void describe(io::Fields& f);
     double pixels() const { return static_cast<double>(width) * height; }
+    /// An empty plot of this size.
+    render::Plot plot() const;
 };
 
 /// Rich text for titles: "$phi$ = 0.56, $sigma$/$sigma$_{0} = 2, $n$ = 200" in Greek letters.

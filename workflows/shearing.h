@@ -39,6 +39,7 @@ struct ShearingParameters {
 
     void describe(io::Fields& f);
     /// Exactly one of stress and rate, allowed by the model; the length in range of the interval.
+    /// Notes in the plan what the step needs, but for frames.
     Control check(const io::JsonNode& node, Plan& plan, double strain) const;
     /// The time [1/rate0] after which the step ends in any case: maximum_time, or what the strain
     /// takes at a viscosity of 1e5 eta0 (stress control), or a little more than it takes (rate

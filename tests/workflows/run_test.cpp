@@ -273,6 +273,25 @@ TEST_F(SmallRun, StabilityFollowsFromTheFlowCurve)
         EXPECT_GT(std::filesystem::file_size(folder / "out/falls" / name), 300u) << name;
 }
 
+TEST_F(SmallRun, NoPictureIsDrawnOfWhatHasNoPoints)
+{
+    write("all_jam.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.61},
+        "steps": [{"step": "pack"},
+                  {"step": "shear", "sweep": {"stress": [40, 80]}, "strain": 0.5},
+                  {"step": "flow_curve"}, {"step": "stability"}]})");
+    const Said said = run("run all_jam.json -q");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const Json steps = json("out/all_jam/summary.json")["steps"];
+    ASSERT_EQ(steps["shear_40"]["outcome"], "jammed");
+    EXPECT_EQ(steps["flow_curve"]["curves"][0]["shape"], "arch-shaped");
+    EXPECT_EQ(steps["flow_curve"]["outcome"], "no picture, nothing flows");
+    EXPECT_EQ(steps["stability"]["outcome"], "nothing to say, no two neighbouring stresses flow");
+    for (const char* name : {"flow_curve", "flow_curve_viscosity", "stability"})
+        EXPECT_FALSE(
+            std::filesystem::exists(folder / "out/all_jam" / (name + std::string(".png"))));
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/all_jam/flow_curve.csv"));
+}
+
 TEST_F(SmallRun, FlowCurveShowsImposedRatesBesideImposedStresses)
 {
     write("both.json", R"({"suspension": {"particles": 30, "volume_fraction": 0.4, "size_ratio": 1,

@@ -63,6 +63,10 @@ render::Series drawn(const std::map<double, Measured>& points, bool viscosity,
         series.y.push_back(viscosity ? m.viscosity() : m.rate.mean);
         series.y_error.push_back(viscosity ? m.viscosity_error() : m.rate.standard_error);
     }
+    // what is imposed has no error bars
+    for (auto* errors : {&series.x_error, &series.y_error})
+        if (std::all_of(errors->begin(), errors->end(), [](double e) { return e == 0; }))
+            errors->clear();
     return series;
 }
 
@@ -115,9 +119,7 @@ struct FlowCurve {
 
     render::Plot plot(const char* title) const
     {
-        render::Plot plot;
-        plot.width = size.width;
-        plot.height = size.height;
+        render::Plot plot = size.plot();
         plot.title = title;
         plot.x.logarithmic = plot.y.logarithmic = true;
         return plot;
@@ -154,6 +156,12 @@ struct FlowCurve {
                 crosses.marker = render::Marker::cross;
                 plot->series.push_back(std::move(crosses));
             }
+        }
+        const auto is_empty = [](const render::Series& series) { return series.x.empty(); };
+        for (render::Plot* plot : {&rates, &viscosities}) std::erase_if(plot->series, is_empty);
+        if (rates.series.empty()) {
+            context.results["outcome"] = "no picture, nothing flows";
+            return;
         }
         make_room(rates);
         write_plot(context, context.step_name, rates);

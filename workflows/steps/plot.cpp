@@ -80,9 +80,7 @@ struct Plot {
     void run(Context& context) const
     {
         const Run& run = context.run(of);
-        render::Plot plot;
-        plot.width = size.width;
-        plot.height = size.height;
+        render::Plot plot = size.plot();
         plot.title = title_text(run.volume_fraction, run.control, run.particles);
         plot.x.title = axis_text(field_named(x));
         plot.y.title = axis_text(field_named(y));

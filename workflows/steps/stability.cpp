@@ -5,7 +5,9 @@
 #include "workflows/pictures.h"
 #include "workflows/steps.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace sigmaflow::workflows {
 
@@ -20,6 +22,9 @@ struct Interval {
     std::optional<Onset> onset = {};
 
     double stress() const { return (from + to) / 2; }
+    /// The critical Reynolds number is known, but for an error smaller than itself; others stand in
+    /// the table only.
+    bool is_drawn() const { return onset->reynolds.standard_error < onset->reynolds.mean; }
 };
 
 /// Slope and viscosity in the middle. Their errors share those of the two rates; the slope's, which
@@ -53,13 +58,25 @@ std::vector<Interval> intervals_of(const Curves& curves, Value relaxation)
     return result;
 }
 
+/// The interval with the smallest Re_c of each volume fraction.
+std::vector<Interval> least_stable(const std::vector<Interval>& falling)
+{
+    std::vector<Interval> result;
+    for (const Interval& i : falling) {
+        if (result.empty() || result.back().volume_fraction != i.volume_fraction)
+            result.push_back(i);
+        else if (i.onset->reynolds.mean < result.back().onset->reynolds.mean)
+            result.back() = i;
+    }
+    return result;
+}
+
 std::string csv_text(const std::vector<Interval>& intervals)
 {
     std::string text =
         "# slope: d shear_rate/d stress [1/eta0]; critical_reynolds: Re = rho rate H^2/viscosity "
-        "up "
-        "to which uniform flow in a gap H is stable, empty: at all; frequency: angular, at onset "
-        "[shear rate]\n"
+        "up to which uniform flow in a gap H is stable, empty: at all; frequency: angular, at "
+        "onset [shear rate]\n"
         "volume_fraction,from_stress,to_stress,viscosity,viscosity_error,slope,slope_error,"
         "critical_reynolds,critical_reynolds_error,frequency\n";
     for (const Interval& i : intervals) {
@@ -114,27 +131,16 @@ struct Stability {
         plan.needs.plotted_pixels = size.pixels();
     }
 
-    render::Plot plot() const
-    {
-        render::Plot plot;
-        plot.width = size.width;
-        plot.height = size.height;
-        plot.x.logarithmic = true;
-        return plot;
-    }
-
-    /// Re_c in the middle of the falling intervals, a series for each volume fraction. Those with
-    /// an error larger than themselves stand in the table only.
+    /// Re_c in the middle of the falling intervals, a series for each volume fraction.
     render::Plot critical_plot(const std::vector<Interval>& falling) const
     {
-        render::Plot result = plot();
+        render::Plot result = size.plot();
         result.title = "Uniform flow is stable below";
         result.x.title = "shear stress $σ$/$σ$_{0}";
         result.y.title = "critical Reynolds number $ρ$ $γ̇$ $H$^{2}/$η$";
-        result.y.logarithmic = true;
+        result.x.logarithmic = result.y.logarithmic = true;
         const Interval* before = nullptr;
         for (const Interval& i : falling) {
-            if (i.onset->reynolds.standard_error > i.onset->reynolds.mean) continue;
             if (!before || before->volume_fraction != i.volume_fraction) {
                 render::Series series;
                 series.label = "$ϕ$ = " + short_number(i.volume_fraction);
@@ -151,14 +157,15 @@ struct Stability {
         return result;
     }
 
-    /// Growth of the first mode against Re, in the least stable interval of each volume fraction.
-    render::Plot growth_plot(const std::vector<Interval>& least_stable) const
+    /// Growth of the first mode against Re in these intervals.
+    render::Plot growth_plot(const std::vector<Interval>& intervals) const
     {
-        render::Plot result = plot();
+        render::Plot result = size.plot();
+        result.x.logarithmic = true;
         result.title = "Growth of the first mode where the flow is least stable";
         result.x.title = "Reynolds number $ρ$ $γ̇$ $H$^{2}/$η$";
         result.y.title = "growth rate/$γ̇$";
-        for (const Interval& i : least_stable) {
+        for (const Interval& i : intervals) {
             render::Series series;
             series.label = "$ϕ$ = " + short_number(i.volume_fraction) +
                            ", $σ$/$σ$_{0} = " + short_number(i.stress());
@@ -172,12 +179,9 @@ struct Stability {
             result.series.push_back(std::move(series));
         }
         render::Series zero;
-        if (!result.series.empty())
-            zero.x = {result.series.front().x.front(), result.series.front().x.back()};
-        for (const render::Series& series : result.series) {
-            zero.x.front() = std::min(zero.x.front(), series.x.front());
-            zero.x.back() = std::max(zero.x.back(), series.x.back());
-        }
+        for (const render::Series& series : result.series)
+            zero.x.insert(zero.x.end(), {series.x.front(), series.x.back()});
+        std::sort(zero.x.begin(), zero.x.end());
         zero.y.assign(zero.x.size(), 0);
         zero.line = render::Line::dashed;
         zero.line_width = 1.5;
@@ -192,25 +196,24 @@ struct Stability {
                                relaxation_strain_error / relaxation_strain / relaxation_strain};
         const std::vector<Interval> all = intervals_of(curves_of(context, runs), relaxation);
         io::write_file(context.folder.file(context.step_name + ".csv"), csv_text(all));
-        std::vector<Interval> falling, least_stable;
-        for (const Interval& i : all) {
-            if (!i.onset) continue;
-            falling.push_back(i);
-            if (least_stable.empty() || least_stable.back().volume_fraction != i.volume_fraction)
-                least_stable.push_back(i);
-            else if (i.onset->reynolds.mean < least_stable.back().onset->reynolds.mean)
-                least_stable.back() = i;
-        }
+        std::vector<Interval> falling, drawn;
+        for (const Interval& i : all)
+            if (i.onset) falling.push_back(i);
+        std::copy_if(falling.begin(), falling.end(), std::back_inserter(drawn),
+                     [](const Interval& i) { return i.is_drawn(); });
         context.results["relaxation_strain"] = relaxation_strain;
         context.results["least_stable"] = Json::array();
-        for (const Interval& i : least_stable)
+        for (const Interval& i : least_stable(falling))
             context.results["least_stable"].push_back(interval_json(i));
-        if (falling.empty()) {
+        if (all.empty())
+            context.results["outcome"] = "nothing to say, no two neighbouring stresses flow";
+        else if (falling.empty())
             context.results["outcome"] = "stable at all Reynolds numbers, the rate falls nowhere";
-            return;
-        }
-        write_plot(context, context.step_name, critical_plot(falling));
-        write_plot(context, context.step_name + "_growth", growth_plot(least_stable));
+        else if (drawn.empty())
+            context.results["outcome"] = "no picture, all errors are larger than the values";
+        if (drawn.empty()) return;
+        write_plot(context, context.step_name, critical_plot(drawn));
+        write_plot(context, context.step_name + "_growth", growth_plot(least_stable(drawn)));
     }
 };
 

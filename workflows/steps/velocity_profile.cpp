@@ -41,9 +41,9 @@ std::string number_of_units(double strain)
     return strain == 1 ? "strain unit" : short_number(strain) + " strain units";
 }
 
-render::Plot profile_plot(const Profiles& profiles, double spacing)
+render::Plot profile_plot(const Profiles& profiles, double spacing, const PictureSize& size)
 {
-    render::Plot plot;
+    render::Plot plot = size.plot();
     plot.x.title = "$U_{x}$/($γ̇$ $L_{y}$)";
     plot.y.title = "$y$/$L_{y}$";
     plot.y.minimum = 0;
@@ -131,9 +131,7 @@ struct VelocityProfileStep {
         }
         const Profiles profiles = profiles_of(run);
         io::write_file(context.folder.file(context.step_name + ".csv"), csv_text(profiles));
-        render::Plot plot = profile_plot(profiles, spacing);
-        plot.width = size.width;
-        plot.height = size.height;
+        render::Plot plot = profile_plot(profiles, spacing, size);
         plot.title = title_text(run.volume_fraction, run.control, run.particles);
         write_plot(context, context.step_name, plot);
 
