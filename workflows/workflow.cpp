@@ -171,10 +171,12 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
 
     std::vector<StepText> texts;
     for (const io::JsonNode& node : root.member("steps").elements({1, most_steps}))
-        for (const StepText& text : unfolded(node)) texts.push_back(text);
-    if (texts.size() > most_steps)
-        throw root.member("steps").error("stands for more than " + std::to_string(most_steps) +
-                                         " steps, " + std::to_string(texts.size()));
+        for (const StepText& text : unfolded(node)) {
+            texts.push_back(text);
+            if (texts.size() > most_steps)
+                throw root.member("steps").error("stands for more than " +
+                                                 std::to_string(most_steps) + " steps");
+        }
     for (const StepText& text : texts) workflow.steps.push_back(make_step(text.node));
     name_steps(workflow.steps, texts);
     Plan plan{.suspension = *workflow.suspension,

@@ -347,6 +347,17 @@ TEST_F(BadInput, ARunThatNoMachineCanHoldIsRefusedBeforeItStarts)
     EXPECT_FALSE(std::filesystem::exists(folder / "result/pack"));
 }
 
+TEST_F(BadInput, SweepsThatStandForTooManyStepsAreRefusedEarly)
+{
+    std::string values = "1", steps = R"({"step": "pack"})";
+    for (int k = 1; k < 1000; ++k) values += ", " + std::to_string(1 + k);
+    for (int k = 1; k < 1000; ++k)
+        steps += R"(, {"step": "shear", "sweep": {"stress": [)" + values + "]}}";
+    write("w.json", R"({"suspension": {}, "steps": [)" + steps + "]}");
+    expect_refused({"validate", "w.json"}, 65,
+                   "w.json:1:29: /steps: stands for more than 1000 steps");
+}
+
 TEST_F(BadInput, ValidateSaysWhatGoodFilesAreAndNamesEveryBadOne)
 {
     write("w.json", R"({"suspension": {}, "steps": [{"step": "pack"}]})");
