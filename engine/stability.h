@@ -16,15 +16,13 @@
 //
 // Tests: the roots solve the equation; the growth of its two differential equations in time.
 #pragma once
+#include "engine/value.h"
+
 #include <array>
 #include <complex>
 #include <optional>
 
 namespace sigmaflow {
-
-struct Value {
-    double mean = 0, standard_error = 0;
-};
 
 /// A steady state and the memory of its microstructure.
 struct UniformFlow {
