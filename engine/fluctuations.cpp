@@ -13,17 +13,24 @@ Fluctuations fluctuations(std::span<const double> series)
     Fluctuations result;
     result.mean = estimate_mean(series);
     std::vector<double> squares;
-    double third = 0;
+    double third = 0, fourth = 0;
     for (double x : series) {
         const double d = x - result.mean.mean;
         squares.push_back(d * d);
         third += d * d * d / static_cast<double>(series.size());
+        fourth += d * d * d * d / static_cast<double>(series.size());
     }
     const Estimate square = estimate_mean(squares);
     const double unbiased = 1 - 1 / std::max(result.mean.effective_samples, 2.);
     result.variance = square.mean / unbiased;
     result.variance_error = square.standard_error / unbiased;
-    if (square.mean > 0) result.skewness = third / std::pow(square.mean, 1.5);
+    if (square.mean > 0) {
+        const double samples = std::max(square.effective_samples, 1.);
+        result.skewness = third / std::pow(square.mean, 1.5);
+        result.skewness_error = std::sqrt(6 / samples);
+        result.kurtosis = fourth / (square.mean * square.mean) - 3;
+        result.kurtosis_error = std::sqrt(24 / samples);
+    }
     return result;
 }
 

@@ -2,9 +2,12 @@
 // size of the system.
 //
 // The variance is the mean of (x - mean)^2; its standard error is that of this mean for correlated
-// samples (engine/statistics.h). The missing factor 1 - 2 tau/n of the variance (its bias from the
-// mean being that of the same series) is divided out. Independent parts of a large system give a
-// variance proportional to 1/n (Mari, Seto, Morris & Denn, Phys. Rev. E 91, 052302, 2015, Fig. 4).
+// samples (engine/statistics.h). Skewness and excess kurtosis are 0 for normal fluctuations;
+// intermittency (rare large excursions) makes the kurtosis large. Their standard errors are those
+// of normal samples, roots of 6/N and 24/N, with the effective number N of squares. The missing
+// factor 1 - 2 tau/n of the variance (its bias from the mean being that of the same series) is
+// divided out. Independent parts of a large system give a variance proportional to 1/n (Mari, Seto,
+// Morris & Denn, Phys. Rev. E 91, 052302, 2015, Fig. 4).
 #pragma once
 #include "engine/statistics.h"
 
@@ -15,7 +18,8 @@ namespace sigmaflow {
 struct Fluctuations {
     Estimate mean;
     double variance = 0, variance_error = 0;
-    double skewness = 0;  // third central moment over variance^(3/2) [-]; 0 if nothing fluctuates
+    double skewness = 0, skewness_error = 0;  // third moment over variance^(3/2) [-]
+    double kurtosis = 0, kurtosis_error = 0;  // fourth over variance^2, minus 3 [-]
 };
 
 /// Errors: numerics (a sample that is not finite).

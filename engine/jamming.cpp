@@ -1,5 +1,6 @@
 #include "engine/jamming.h"
 
+#include "engine/error.h"
 #include "engine/workspace.h"
 
 #include <algorithm>
@@ -52,6 +53,20 @@ bool JammingMonitor::observe(const State& state, const Evaluation& e)
     start_time_ = state.time;
     start_strain_ = state.strain;
     return window_.jammed;
+}
+
+JammingBracket bracket_jamming_stress(double low, double high, double ratio,
+                                      const std::function<bool(double)>& jams)
+{
+    if (!(low > 0 && high > low && ratio > 1))
+        throw Error(ErrorKind::input, "jamming stress", "needs 0 < low < high and ratio > 1");
+    if (jams(low)) return {0, low};
+    if (!jams(high)) return {high, 0};
+    while (high > ratio * low) {
+        const double middle = std::sqrt(low * high);
+        (jams(middle) ? high : low) = middle;
+    }
+    return {low, high};
 }
 
 }

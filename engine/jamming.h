@@ -10,6 +10,8 @@
 #include "engine/evaluation.h"
 #include "engine/state.h"
 
+#include <functional>
+
 namespace sigmaflow {
 
 struct JammingCriterion {
@@ -36,6 +38,17 @@ void archive(Archive& a, JammingWindow& w)
 {
     a(w.duration, w.strain_gain, w.mean_viscosity, w.force_residual, w.jammed);
 }
+
+/// A suspension flows at the stress `flows` and jams at `jams` [sigma0]; 0: not known (it flows at
+/// all stresses that were tried, or at none).
+struct JammingBracket {
+    double flows = 0, jams = 0;
+};
+
+/// Bisects the logarithm of the stress from [low, high] until jams/flows <= ratio, with
+/// jams(stress) asked for both ends first. Errors: input (needs 0 < low < high, ratio > 1).
+JammingBracket bracket_jamming_stress(double low, double high, double ratio,
+                                      const std::function<bool(double)>& jams);
 
 class JammingMonitor {
 public:

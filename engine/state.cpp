@@ -51,6 +51,17 @@ void check_stored_state(const State& s)
     }
 }
 
+State mirrored(State state)
+{
+    state.box.offset = -state.box.offset;
+    for (Vec3& position : state.position) position.x() = -position.x();
+    // stretches are no axial vectors
+    for (Contact& contact : state.contacts)
+        for (Vec3* stretch : {&contact.spring, &contact.rolling}) stretch->x() = -stretch->x();
+    state.time_step = 0;
+    return state;
+}
+
 std::vector<int> species(const State& state)
 {
     std::vector<double> distinct = state.radius;

@@ -43,6 +43,10 @@ void archive(Archive& a, State& s)
 /// finite, no position farther than 1e9 boxes, contacts sorted pairs of particles. Errors: input.
 void check_stored_state(const State& state);
 
+/// The state seen in a mirror that turns x around. Shearing it at the stress sigma is shearing the
+/// original at -sigma: the flow reversed.
+State mirrored(State state);
+
 /// Sum of the particle volumes over the box volume [-].
 double volume_fraction(const State& state);
 

@@ -126,6 +126,16 @@ std::string death(int status, const GuardLimits& limits)
 
 }
 
+GuardLimits limits_for(const std::filesystem::path& file)
+{
+    const std::size_t megabytes = std::filesystem::file_size(file) >> 20;
+    GuardLimits limits;
+    limits.memory += std::min(megabytes, std::size_t{1024}) << 20;
+    limits.cpu_seconds += static_cast<int>(std::min(megabytes / 20, std::size_t{100'000}));
+    limits.wall_seconds += 4 * limits.cpu_seconds;
+    return limits;
+}
+
 std::string guarded(const std::filesystem::path& file, const GuardLimits& limits,
                     const std::function<std::string()>& read)
 {

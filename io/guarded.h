@@ -17,6 +17,9 @@ struct GuardLimits {
     int wall_seconds = 20;  // a disk may be slow
 };
 
+/// More for a larger file: the limits are for files that ask for what they do not have.
+GuardLimits limits_for(const std::filesystem::path& file);
+
 /// What `read` returns. An Error that it throws is thrown here; one that it can only die of becomes
 /// Error(input) for `file`: stopped by a signal, out of memory or out of time. Other exceptions
 /// become Error(input) too. Error(internal) if no process can be started.

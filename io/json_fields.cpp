@@ -75,6 +75,18 @@ Field& Fields::operator()(std::string name, int& value, Integers range, std::str
     return add(std::move(field));
 }
 
+Field& Fields::operator()(std::string name, std::optional<int>& value, Integers range,
+                          std::string unit, std::string help)
+{
+    const Range shown = between(static_cast<double>(range.low), static_cast<double>(range.high));
+    Field field{std::move(name), std::move(unit), std::move(help), FieldKind::integer, shown};
+    field.read = [&value, range](const JsonNode& node) {
+        value = static_cast<int>(node.integer(range.low, range.high));
+    };
+    field.write = [&value] { return value ? ordered_json(*value) : ordered_json(nullptr); };
+    return add(std::move(field));
+}
+
 Field& Fields::operator()(std::string name, std::uint64_t& value, std::string help)
 {
     Field field{std::move(name), "-", std::move(help), FieldKind::integer, at_least(0)};
@@ -158,6 +170,22 @@ Field& Fields::group(std::string name, std::string help,
     field.members = std::move(inner.fields_);
     field.read = [members = field.members](const JsonNode& node) { read_fields(node, members); };
     field.write = [members = field.members] { return write_fields(members); };
+    return add(std::move(field));
+}
+
+Field& Fields::changes(std::string name, std::string help,
+                       const std::function<void(Fields&)>& describe, ordered_json& given)
+{
+    Fields inner;
+    describe(inner);
+    Field field{.name = std::move(name), .help = std::move(help), .kind = FieldKind::group};
+    field.read = [members = std::move(inner.fields_), &given](const JsonNode& node) {
+        read_fields(node, members);
+        given = ordered_json::object();
+        for (const Field& member : members)
+            if (node.has(member.name)) given[member.name] = member.write();
+    };
+    field.write = [&given] { return given; };
     return add(std::move(field));
 }
 

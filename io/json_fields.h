@@ -67,6 +67,8 @@ public:
                       std::string help);
     Field& operator()(std::string name, int& value, Integers range, std::string unit,
                       std::string help);
+    Field& operator()(std::string name, std::optional<int>& value, Integers range, std::string unit,
+                      std::string help);
     Field& operator()(std::string name, std::uint64_t& value, std::string help);
     Field& operator()(std::string name, std::optional<std::uint64_t>& value, std::string help);
     Field& operator()(std::string name, bool& value, std::string help);
@@ -85,6 +87,10 @@ public:
 
     /// An object of its own; `describe` is called at once.
     Field& group(std::string name, std::string help, const std::function<void(Fields&)>& describe);
+
+    /// An object that replaces some of the described values: those that were given, as JSON.
+    Field& changes(std::string name, std::string help, const std::function<void(Fields&)>& describe,
+                   nlohmann::ordered_json& given);
 
     const std::vector<Field>& list() const { return fields_; }
 

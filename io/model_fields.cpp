@@ -64,6 +64,24 @@ void check_model(const Model& model, const JsonNode& object)
                 number_text(model.friction_dynamic) + " and " + number_text(model.friction_static));
 }
 
+void ModelChanges::describe(Fields& fields)
+{
+    fields.changes(
+        "model", "parameters of the suspension's model that this step replaces",
+        [this](Fields& inner) { io::describe(inner, values); }, given);
+}
+
+Model ModelChanges::applied_to(const Model& model) const
+{
+    Model result = model;
+    if (given.is_null()) return result;
+    Fields fields;
+    io::describe(fields, result);
+    const JsonDocument document = JsonDocument::parse(given.dump(), "model");
+    read_fields(document.root(), fields.list());
+    return result;
+}
+
 Control checked_control(const std::optional<double>& stress, const std::optional<double>& rate,
                         const Model& model, const JsonNode& object)
 {

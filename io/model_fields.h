@@ -3,6 +3,7 @@
 #include "engine/model.h"
 #include "io/json_fields.h"
 
+#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace sigmaflow::io {
@@ -14,6 +15,16 @@ void describe(Fields& fields, Model& model);
 /// friction_dynamic <= friction_static.
 Model read_model(const JsonNode& object);
 void check_model(const Model& model, const JsonNode& object);
+
+/// Some parameters of a model with other values.
+struct ModelChanges {
+    Model values;                  // that are replaced, the others without meaning
+    nlohmann::ordered_json given;  // null: none
+
+    /// One line, "model".
+    void describe(Fields& fields);
+    Model applied_to(const Model& model) const;
+};
 
 /// Reads {"stress": x} or {"rate": x}, any finite number. Checks that the model allows it: the
 /// stiffness scale `stress` needs an imposed stress > 0.

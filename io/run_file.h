@@ -55,7 +55,16 @@ StoredRun read_run(const std::filesystem::path& path);
 
 struct RunSummary {
     std::size_t samples = 0, frames = 0, particles = 0;
+    Control control;
+    double strain = 0;           // of the last frame [-]
+    double volume_fraction = 0;  // of the first frame [-]
 };
+
+template <class Archive>
+void archive(Archive& a, RunSummary& s)
+{
+    a(s.samples, s.frames, s.particles, s.control, s.strain, s.volume_fraction);
+}
 
 /// Checks all that read_run checks, and that boxes and positions are finite, without taking the run
 /// into memory: about a megabyte, or one frame of one array, at a time.

@@ -284,18 +284,24 @@ void check_frames(const Hdf5Group& file, const Hdf5Group& trajectory, hsize_t co
 RunSummary check_run(const std::filesystem::path& path)
 {
     const Hdf5Group file = open_run(path);
-    read_parameters(file);
+    RunSummary summary;
+    summary.control = read_parameters(file).control;
     const Hdf5Group texts = file.open_group("provenance");
     for (const std::string& name : attribute_names(texts)) read_text(texts, name);
     const Hdf5Group observables = file.open_group("observables");
     const Hdf5Group trajectory = file.open_group("particles").open_group("trajectory");
-    RunSummary summary;
     summary.samples = sample_count(observables);
     check_samples(observables, summary.samples);
     summary.frames = rows_of(trajectory.open_group("position"), "time");
     check_values<double>(trajectory.open_group("position"), "time", {summary.frames});
     summary.particles = read_radii(trajectory).size();
     check_frames(file, trajectory, summary.frames, summary.particles);
+    if (summary.frames == 0) return summary;
+    const Shape frames{summary.frames};
+    summary.strain = element_values<double>(file.open_group("state"), "strain", frames).back();
+    summary.volume_fraction =
+        element_values<double>(observables.open_group("trajectory"), "volume_fraction", frames)
+            .front();
     return summary;
 }
 

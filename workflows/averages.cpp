@@ -2,6 +2,7 @@
 
 #include "engine/statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -45,6 +46,20 @@ std::span<const Sample> stationary_part(const Run& run)
            run.series[first].strain < *run.start_up - 1e-9)
         ++first;
     return std::span(run.series).subspan(first);
+}
+
+const SampleField& field_named(std::string_view name)
+{
+    for (const SampleField& field : sample_fields())
+        if (field.name == name) return field;
+    throw Error(ErrorKind::internal, std::string(name), "no such scalar");
+}
+
+std::vector<std::string_view> field_names()
+{
+    std::vector<std::string_view> names;
+    for (const SampleField& field : sample_fields()) names.push_back(field.name);
+    return names;
 }
 
 std::vector<double> column(std::span<const Sample> samples, double Sample::*value)
@@ -93,6 +108,18 @@ Json averages_json(const Run& run)
             quantity(estimate_mean(column(samples, field.value)), field.unit);
     }
     return result;
+}
+
+std::vector<std::string> runs_like_the_last(const Plan& plan)
+{
+    std::vector<std::string> names;
+    const auto is_shear = [](const PlannedRun& run) { return run.frames > 0; };
+    const auto last = std::find_if(plan.runs.rbegin(), plan.runs.rend(), is_shear);
+    for (const PlannedRun& run : plan.runs)
+        if (is_shear(run) && run.volume_fraction == last->volume_fraction &&
+            control_json(run.control) == control_json(last->control))
+            names.push_back(run.name);
+    return names;
 }
 
 Json control_json(const Control& control)

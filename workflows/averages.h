@@ -13,6 +13,10 @@ namespace sigmaflow::workflows {
 /// The samples after the start-up.
 std::span<const Sample> stationary_part(const Run& run);
 
+/// Of sample_fields(). Error(internal) for an unknown name.
+const SampleField& field_named(std::string_view name);
+std::vector<std::string_view> field_names();
+
 /// One column of samples.
 std::vector<double> column(std::span<const Sample> samples, double Sample::*value);
 
@@ -22,6 +26,9 @@ void find_start_up(Run& run);
 
 /// {"shear_rate": {"mean", "standard_error", "unit", ...}, "viscosity": ..., ...}
 nlohmann::ordered_json averages_json(const Run& run);
+
+/// The steps "shear" so far at the volume fraction and stress (or rate) of the last one.
+std::vector<std::string> runs_like_the_last(const Plan& plan);
 
 /// {"stress": 2} or {"rate": 1}
 nlohmann::ordered_json control_json(const Control& control);

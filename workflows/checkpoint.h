@@ -77,6 +77,7 @@ public:
 
     /// A step begins, or goes on from a checkpoint.
     void begin(const StepIdentity& step, std::optional<Checkpoint> saved);
+    const StepIdentity& step() const { return step_; }
     /// The checkpoint that the running step goes on from, if it does.
     const Checkpoint* saved() const { return saved_ ? &*saved_ : nullptr; }
 

@@ -32,8 +32,9 @@ constexpr double drawn_pixel_on_disk = 0.6, plotted_pixel_on_disk = 0.1;
 constexpr double files_of_step = 200e3;  // tables, SVG
 }
 
-double memory_of(const Needs& needs, double particles)
+double memory_of(const Needs& needs)
 {
+    const double particles = needs.particles;
     double result = needs.frames_read * particles * bytes::particle_in_frame;
     if (needs.volume_fraction > 0)
         result += bytes::solver * std::pow(particles, bytes::solver_power) *
@@ -44,8 +45,9 @@ double memory_of(const Needs& needs, double particles)
     return result;
 }
 
-double disk_of(const Needs& needs, double particles)
+double disk_of(const Needs& needs)
 {
+    const double particles = needs.particles;
     return needs.frames * particles * bytes::particle_in_frame_on_disk +
            needs.samples * bytes::sample_on_disk + particles * bytes::particle_of_step +
            needs.drawn_pixels * bytes::drawn_pixel_on_disk +
@@ -147,19 +149,18 @@ std::string size_text(double size)
 
 Forecast forecast(const Workflow& workflow, const Resumption* plan)
 {
-    const double particles = workflow.suspension->packing.particles;
     Forecast result;
     double series = 0;  // of all runs, which stays in memory
     for (std::size_t k = 0; k < workflow.steps.size(); ++k) {
         const Step& step = workflow.steps[k];
         series += step.needs.samples * bytes::sample_in_memory;
         if (plan && plan->steps[k].record) continue;
-        const double memory = bytes::program + series + memory_of(step.needs, particles);
+        const double memory = bytes::program + series + memory_of(step.needs);
         if (memory > result.memory) {
             result.memory = memory;
             result.step = step.name;
         }
-        result.disk += disk_of(step.needs, particles);
+        result.disk += disk_of(step.needs);
     }
     if (plan && plan->checkpoint)
         result.disk = std::max(0., result.disk - stored_bytes(*plan->checkpoint));

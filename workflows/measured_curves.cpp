@@ -31,14 +31,17 @@ std::vector<PlannedRun> runs_for_curves(const io::JsonNode& node, const Plan& pl
                 "volume fraction " +
                 io::number_text(volume_fraction));
     }
+    for (const PlannedRun& run : runs)
+        if (run.particles != runs.front().particles)
+            throw node.error("needs runs of one number of particles, there are some of " +
+                             std::to_string(runs.front().particles) + " and " +
+                             std::to_string(run.particles));
     if (stresses.empty())
         throw node.error(
             "needs steps \"shear\" at imposed stresses before it, e.g. with "
             "\"sweep\": {\"stress\": [0.5, 1, 2]}");
     return runs;
 }
-
-namespace {
 
 Measured measured(const Run& run)
 {
@@ -57,8 +60,6 @@ Measured measured(const Run& run)
         if (run.jammed) result.rate = {};
     }
     return result;
-}
-
 }
 
 Curves curves_of(const Context& context, const std::vector<PlannedRun>& planned)

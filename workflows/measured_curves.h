@@ -32,6 +32,9 @@ using Curves = std::map<double, Curve>;
 /// sheared at an imposed stress. Errors: input.
 std::vector<PlannedRun> runs_for_curves(const io::JsonNode& node, const Plan& plan);
 
+/// A jammed run has the rate 0 without error.
+Measured measured(const Run& run);
+
 /// Of two runs at one stress or rate the later one counts.
 Curves curves_of(const Context& context, const std::vector<PlannedRun>& planned);
 

@@ -36,8 +36,9 @@ std::string cleared(Context& context)
 
 }
 
-RunFiles::RunFiles(Context& context, const Control& control, bool for_paraview)
+RunFiles::RunFiles(Context& context, const Model& model, const Control& control, bool for_paraview)
     : context_(context),
+      model_(model),
       folder_(cleared(context)),
       for_paraview_(for_paraview),
       run_{.name = context.step_name,
@@ -109,14 +110,14 @@ std::vector<FileMark> RunFiles::marks()
 std::filesystem::path RunFiles::write_failure(const State& state)
 {
     const std::filesystem::path path = context_.folder.path() / (folder_ + failure_name);
-    io::write_case(path, state, context_.suspension.model, run_.control);
+    io::write_case(path, state, model_, run_.control);
     return path;
 }
 
 void RunFiles::write_hdf5()
 {
-    io::RunWriter hdf5(context_.folder.file(folder_ + run_name), context_.state,
-                       context_.suspension.model, run_.control, context_.provenance);
+    io::RunWriter hdf5(context_.folder.file(folder_ + run_name), context_.state, model_,
+                       run_.control, context_.provenance);
     io::read_journal(journal_path(), {[&](const Sample& sample, bool) { hdf5.append(sample); },
                                       [&](const Frame& frame) { hdf5.append(frame); }});
     hdf5.finish();
@@ -127,8 +128,8 @@ Run& RunFiles::finish()
     csv_.finish();
     journal_.finish();
     write_hdf5();
-    io::write_case(context_.folder.file(folder_ + state_name), context_.state,
-                   context_.suspension.model, run_.control);
+    io::write_case(context_.folder.file(folder_ + state_name), context_.state, model_,
+                   run_.control);
     context_.last_run = run_.name;
     return context_.runs.emplace_back(std::move(run_));
 }

@@ -20,7 +20,7 @@ namespace sigmaflow::workflows {
 class RunFiles {
 public:
     /// `for_paraview`: frames also as VTK files.
-    RunFiles(Context& context, const Control& control, bool for_paraview);
+    RunFiles(Context& context, const Model& model, const Control& control, bool for_paraview);
 
     /// `on_grid`: at a multiple of the series interval, unlike the last sample of a run that ran
     /// out of time.
@@ -45,6 +45,7 @@ private:
     std::filesystem::path journal_path() const;
 
     Context& context_;
+    const Model model_;
     std::string folder_;  // relative to the run folder
     bool for_paraview_;
     Run run_;

@@ -3,6 +3,7 @@
 #include "io/atomic_file.h"
 #include "workflows/forecast.h"
 #include "workflows/manifest.h"
+#include "workflows/parts.h"
 #include "workflows/report.h"
 #include "workflows/resumption.h"
 #include "workflows/workflow.h"
@@ -29,7 +30,8 @@ void hand_on(StepRecord record, Context& context)
 {
     if (record.state) context.state = std::move(*record.state);
     if (record.run) {
-        record.run->file = context.folder.path() / record.identity.name / run_name;
+        if (record.run->file.empty())
+            record.run->file = context.folder.path() / record.identity.name / run_name;
         context.runs.push_back(std::move(*record.run));
     }
     context.last_run = record.last_run;
@@ -57,9 +59,13 @@ StepRecord run_step(const Step& step, const StepIdentity& identity, Context& con
                       .run = {},
                       .last_run = context.last_run};
     if (step.changes_state) record.state = context.state;
-    if (context.runs.size() > runs) record.run = context.runs.back();
+    if (context.runs.size() > runs) {
+        record.run = context.runs.back();
+        if (step.inputs.empty()) record.run->file.clear();  // the folder may be moved
+    }
     if (context.problems.size() == problems) write_record(context.folder, record);
     remove_checkpoints(context.folder);
+    remove_parts(context.folder, step.name);
     context.folder.remove(step.name + "/" + journal_name);  // only now: checkpoints need it
     return record;
 }
@@ -121,6 +127,7 @@ void run_workflow(const RunOptions& options, std::ostream& results)
     const Forecast needed = forecast(workflow, &plan);
     check_room(needed, room_here(folder.path()), document.root(), folder.path());
     remove_unused(plan, folder);
+    remove_other_parts(folder, options.force ? std::vector<std::string>{} : workflow.step_names());
     Progress progress = Progress::for_stderr(options.quiet);
     Manifest manifest(workflow, options.workflow, options.threads);
     manifest.write(folder, "running");

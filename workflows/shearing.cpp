@@ -1,7 +1,7 @@
 #include "workflows/shearing.h"
 
 #include "engine/memory.h"
-#include "io/model_fields.h"
+#include "workflows/start.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,14 +83,21 @@ void ShearingParameters::describe(io::Fields& f)
       "strain between two rows of the time series");
     f("maximum_time", maximum_time, io::above(0), "1/rate0",
       "ends the step in any case; default: strain * 1e5/stress, or 1.01 * strain/rate");
+    model.describe(f);
 }
 
 Control ShearingParameters::check(const io::JsonNode& node, Plan& plan, double strain) const
 {
     plan.need_state(node);
-    const Model& model = plan.suspension.model;
-    const Control control = io::checked_control(stress, rate, model, node);
-    if (scheme == Scheme::implicit && model.contact_hydrodynamics == ContactHydrodynamics::dashpot)
+    const Model changed = model.applied_to(plan.suspension.model);
+    if (const auto given = node.find("model")) {
+        io::check_model(changed, *given);
+        if (plan.narrowest_box < narrowest_box_allowed(plan.suspension, changed))
+            throw given->error("forces of this range need a wider box, more particles");
+    }
+    const Control control = io::checked_control(stress, rate, changed, node);
+    if (scheme == Scheme::implicit &&
+        changed.contact_hydrodynamics == ContactHydrodynamics::dashpot)
         throw node.error_at_key("scheme",
                                 "\"implicit\" (the default) needs contact_hydrodynamics "
                                 "\"lubrication\"; \"heun\" can do \"dashpot\"");
@@ -102,10 +109,12 @@ Control ShearingParameters::check(const io::JsonNode& node, Plan& plan, double s
     return control;
 }
 
-ShearingTask ShearingParameters::task(double strain, double frame_interval, int threads) const
+ShearingTask ShearingParameters::task(const Model& of_suspension, double strain,
+                                      double frame_interval, int threads) const
 {
     const bool long_steps = scheme == Scheme::implicit;
-    return {.control = rate ? Control(ImposedRate{*rate}) : Control(ImposedStress{*stress}),
+    return {.model = model.applied_to(of_suspension),
+            .control = rate ? Control(ImposedRate{*rate}) : Control(ImposedStress{*stress}),
             .stepping = {scheme, displacement.value_or(long_steps ? 1e-2 : 1e-3)},
             .solver = {solver, solver_tolerance.value_or(long_steps ? 1e-3 : 1e-5), threads},
             .strain = strain,
@@ -135,12 +144,18 @@ std::string_view outcome_name(Outcome outcome)
 
 namespace {
 
+/// Where the outputs of a run go.
+struct Outputs {
+    std::function<void(const Sample&, bool on_grid)> sample;
+    std::function<void(const Frame&)> frame = {};  // empty: no frames are made
+};
+
 /// Makes the outputs that are due at the strain of the state and says when to stop.
 class Recorder {
 public:
-    Recorder(const ShearingTask& task, RunFiles& files, const std::function<bool()>& enough)
+    Recorder(const ShearingTask& task, Outputs outputs, const std::function<bool()>& enough)
         : task_(task),
-          files_(files),
+          outputs_(std::move(outputs)),
           enough_(enough),
           samples_(task.series_interval),
           frames_(task.frame_interval)
@@ -168,10 +183,10 @@ public:
         has_sample_ = has_frame_ = false;
         if (!on_grid && !frame && !last_) return std::nullopt;
 
-        if (!frame && !last_) {
+        if (!outputs_.frame || (!frame && !last_)) {
             SampledEvaluation sampled = evaluate_sample(state, model, task_.control, workspace);
             write_sample(make_sample(state, sampled), on_grid);
-            if (!last_) return std::move(sampled.evaluation);
+            if (!outputs_.frame || !last_) return std::move(sampled.evaluation);
         }
         DetailedEvaluation detailed = evaluate_in_detail(state, model, task_.control, workspace);
         if (!has_sample_ && (on_grid || last_)) write_sample(make_sample(state, detailed), on_grid);
@@ -182,11 +197,11 @@ public:
     /// Makes sure that the last state is recorded.
     void record_end(const State& state, const Model& model, Workspace& workspace)
     {
-        if (has_sample_ && has_frame_) return;
+        if (has_sample_ && (has_frame_ || !outputs_.frame)) return;
         const DetailedEvaluation detailed =
             evaluate_in_detail(state, model, task_.control, workspace);
         if (!has_sample_) write_sample(make_sample(state, detailed), false);
-        if (!has_frame_) write_frame(state, detailed);
+        if (!has_frame_ && outputs_.frame) write_frame(state, detailed);
     }
 
     bool last() const { return last_; }
@@ -195,18 +210,18 @@ public:
 private:
     void write_sample(const Sample& sample, bool on_grid)
     {
-        files_.append(sample, on_grid);
+        outputs_.sample(sample, on_grid);
         has_sample_ = true;
         if (on_grid && enough_ && enough_()) last_ = true;
     }
     void write_frame(const State& state, const DetailedEvaluation& detailed)
     {
-        files_.append(make_frame(state, detailed));
+        outputs_.frame(make_frame(state, detailed));
         has_frame_ = true;
     }
 
     const ShearingTask& task_;
-    RunFiles& files_;
+    Outputs outputs_;
     const std::function<bool()>& enough_;
     OutputClock samples_, frames_;
     bool last_ = false, arrived_ = false;  // of the state that was recorded last
@@ -254,19 +269,19 @@ void restore(const std::string& bytes, const Model& model, State& state, Voyage&
     a.finish();
 }
 
-/// Goes from one output to the next until the end.
-void travel(Context& context, const ShearingTask& task, RunFiles& files, Voyage& voyage)
+/// Goes from one output to the next until the end; after_step(shear_rate) after each step.
+template <class AfterStep>
+void travel(State& state, const ShearingTask& task, Voyage& voyage, AfterStep&& after_step)
 {
-    State& state = context.state;
-    const Model& model = context.suspension.model;
+    const Model& model = task.model;
     ShearingResult& result = voyage.result;
     for (;;) {
         const auto recorded = voyage.recorder.record(state, model, voyage.workspace);
-        if (voyage.recorder.last()) return;
+        if (voyage.recorder.last()) break;
         if (voyage.jammed) {
             voyage.recorder.record_end(state, model, voyage.workspace);
             result.outcome = Outcome::jammed;
-            return;
+            break;
         }
         Evaluation moved = advance(state, model, task.control, task.stepping,
                                    {voyage.recorder.target(), task.time}, voyage.workspace,
@@ -274,12 +289,19 @@ void travel(Context& context, const ShearingTask& task, RunFiles& files, Voyage&
         ++result.steps;
         result.solver.add(moved.solve);
         voyage.jammed = voyage.monitor && voyage.monitor->observe(state, moved);
-        context.progress.update(std::max(state.strain / task.strain, state.time / task.time),
-                                details_text(state, moved.shear_rate));
+        const double shear_rate = moved.shear_rate;
         recycle(std::move(moved), voyage.workspace);
-        if (context.keeper.due())
-            context.keeper.keep(state.strain, files.marks(), stored(state, voyage));
+        after_step(shear_rate);
     }
+    if (voyage.recorder.arrived()) result.outcome = Outcome::flowing;
+    if (voyage.monitor && voyage.monitor->last_window().duration > 0)
+        result.window = voyage.monitor->last_window();
+}
+
+Error located(const Error& error, const State& state, const ShearingResult& result)
+{
+    return error.within("at strain " + io::number_text(state.strain) + ", step " +
+                        std::to_string(result.steps));
 }
 
 }
@@ -288,26 +310,47 @@ ShearingResult shear(Context& context, const ShearingTask& task, RunFiles& files
                      const std::function<bool()>& enough)
 {
     State& state = context.state;
-    Voyage voyage{Workspace(task.solver), Recorder(task, files, enough), monitor_of(task.control)};
+    const Outputs outputs{
+        [&](const Sample& sample, bool on_grid) { files.append(sample, on_grid); },
+        [&](const Frame& frame) { files.append(frame); }};
+    Voyage voyage{Workspace(task.solver), Recorder(task, outputs, enough),
+                  monitor_of(task.control)};
     if (const Checkpoint* saved = context.keeper.saved())
-        restore(saved->run, context.suspension.model, state, voyage);
+        restore(saved->run, task.model, state, voyage);
     else
         state.strain = state.time = 0;
-    ShearingResult& result = voyage.result;
     try {
-        travel(context, task, files, voyage);
+        travel(state, task, voyage, [&](double shear_rate) {
+            context.progress.update(std::max(state.strain / task.strain, state.time / task.time),
+                                    details_text(state, shear_rate));
+            if (context.keeper.due())
+                context.keeper.keep(state.strain, files.marks(), stored(state, voyage));
+        });
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::numerics) throw;
         const auto dump = files.write_failure(state);
-        const Error located = error.within("at strain " + io::number_text(state.strain) +
-                                           ", step " + std::to_string(result.steps));
-        throw Error(ErrorKind::numerics, located.where(),
-                    located.problem() + "; the state before is in " + dump.string());
+        const Error where = located(error, state, voyage.result);
+        throw Error(ErrorKind::numerics, where.where(),
+                    where.problem() + "; the state before is in " + dump.string());
     }
-    if (voyage.recorder.arrived()) result.outcome = Outcome::flowing;
-    if (voyage.monitor && voyage.monitor->last_window().duration > 0)
-        result.window = voyage.monitor->last_window();
-    return result;
+    return voyage.result;
+}
+
+Trial try_shear(State& state, const ShearingTask& task, const std::function<void()>& after_step)
+{
+    Trial trial;
+    const Outputs outputs{[&](const Sample& sample, bool) { trial.series.push_back(sample); }};
+    const std::function<bool()> never;
+    Voyage voyage{Workspace(task.solver), Recorder(task, outputs, never), monitor_of(task.control)};
+    state.strain = state.time = 0;
+    try {
+        travel(state, task, voyage, [&](double) { after_step(); });
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::numerics) throw;
+        throw located(error, state, voyage.result);
+    }
+    trial.result = voyage.result;
+    return trial;
 }
 
 nlohmann::ordered_json shearing_json(const State& state, const ShearingResult& result)

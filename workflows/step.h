@@ -31,6 +31,7 @@ class Keeper;
 struct PlannedRun {
     std::string name;
     Control control;
+    int particles = 0;
     double volume_fraction = 0;
     double strain = 0;
     double frames = 0;  // that later steps can use
@@ -38,6 +39,7 @@ struct PlannedRun {
 
 /// What a step asks of the machine (workflows/forecast.h).
 struct Needs {
+    double particles = 0;                         // that it works on; 0: those of the last packing
     double volume_fraction = 0;                   // of what it shears; 0: it does not shear
     double samples = 0, frames = 0;               // that it writes
     double frames_read = 0;                       // that it holds in memory
@@ -47,20 +49,28 @@ struct Needs {
 /// What is known while the steps are validated in their order.
 struct Plan {
     const Suspension& suspension;
+    bool has_suspension = true;    // workflows that begin with a stored run need none
+    std::filesystem::path folder;  // of the workflow file: paths in it are relative to that
     std::string step_name;
     bool has_state = false;
-    double volume_fraction = 0;  // of the last packing
+    int particles = 0;           // of the last packing
+    double volume_fraction = 0;  // likewise
+    double narrowest_box = 0;    // likewise [a]
     // set by the step that is validated:
     bool changes_state = false;
+    std::vector<std::filesystem::path>
+        inputs;  // files that it reads, beside those of earlier steps
     Needs needs;
 
     std::vector<PlannedRun> runs;
 
     /// Error(input) if no step before has made a packing.
     void need_state(const io::JsonNode& step) const;
+    /// Error(input) if the workflow names no suspension.
+    void need_suspension(const io::JsonNode& step) const;
     /// The run that the field `of` names, or the last one if it is empty, with frames if asked for;
-    /// `of` is filled in. Errors: input (no such run).
-    const PlannedRun& need_run(const io::JsonNode& step, std::string& of, bool with_frames) const;
+    /// `of` and what the step needs are filled in. Errors: input (no such run).
+    const PlannedRun& need_run(const io::JsonNode& step, std::string& of, bool with_frames);
 };
 
 /// A finished shearing step.
@@ -99,6 +109,7 @@ struct Context {
 struct Step {
     std::string kind, name;
     bool changes_state = false;
+    std::vector<std::filesystem::path> inputs;
     Needs needs;
     std::string pointer;  // "/steps/2"
     std::function<void(io::Fields&)> describe;
@@ -119,6 +130,7 @@ StepKind step_kind(std::string_view name, std::string_view summary)
                 auto step = std::make_shared<T>();
                 return Step{.kind = std::string(name),
                             .name = std::string(name),
+                            .inputs = {},
                             .needs = {},
                             .pointer = "",
                             .describe = [step](io::Fields& f) { step->describe(f); },

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr io::Seal seal{"step record", 1};
+constexpr io::Seal seal{"step record", 2};
 
 }
 
@@ -22,7 +22,9 @@ std::vector<StepIdentity> identities(const Workflow& workflow)
     std::string chain;  // key of the last step that changed the state
     for (std::size_t i = 0; i < workflow.steps.size(); ++i) {
         const Step& step = workflow.steps[i];
-        const Json& parameters = resolved["steps"][i];
+        Json parameters = resolved["steps"][i];
+        for (const std::filesystem::path& input : step.inputs)
+            parameters["checksum"][input.string()] = io::hexadecimal(io::file_checksum(input));
         StepIdentity identity{.name = step.name,
                               .kind = step.kind,
                               .parameters = parameters.dump(),
@@ -35,7 +37,7 @@ std::vector<StepIdentity> identities(const Workflow& workflow)
         ArchiveWriter a;
         a(identity, before);
         identity.key = io::hexadecimal(io::checksum(a.bytes()));
-        if (step.changes_state) chain = identity.key;
+        if (step.changes_state || !step.inputs.empty()) chain = identity.key;
         result.push_back(std::move(identity));
     }
     return result;

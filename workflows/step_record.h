@@ -37,8 +37,10 @@ std::vector<StepIdentity> identities(const Workflow& workflow);
 template <class Archive>
 void archive(Archive& a, Run& run)
 {
-    a(run.name, run.control, run.volume_fraction, run.particles, run.series, run.start_up,
+    std::string file = run.file.string();
+    a(run.name, run.control, run.volume_fraction, run.particles, file, run.series, run.start_up,
       run.jammed, run.continues);
+    run.file = file;
 }
 
 struct StepRecord {
@@ -47,7 +49,7 @@ struct StepRecord {
     double wall_seconds = 0;
     std::vector<ResultFile> files;
     std::optional<State> state;  // if the step changes it
-    std::optional<Run> run;      // if it made one; its file is found by its name
+    std::optional<Run> run;      // if it made one; without its file, if that is <step>/run.h5
     std::string last_run;        // after the step
 };
 

@@ -24,17 +24,6 @@ std::string counted(std::size_t number, const std::string& what)
     return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
 }
 
-/// More for a larger file: the limits are for files that ask for what they do not have.
-io::GuardLimits limits_for(const Path& path)
-{
-    const std::size_t megabytes = std::filesystem::file_size(path) >> 20;
-    io::GuardLimits limits;
-    limits.memory += std::min(megabytes, std::size_t{1024}) << 20;
-    limits.cpu_seconds += static_cast<int>(std::min(megabytes / 20, std::size_t{100'000}));
-    limits.wall_seconds += 4 * limits.cpu_seconds;
-    return limits;
-}
-
 std::string describe_json(const Path& path)
 {
     const io::JsonDocument document = io::JsonDocument::read(path);
@@ -50,7 +39,7 @@ std::string describe_json(const Path& path)
 
 std::string describe_run(const Path& path)
 {
-    return io::guarded(path, limits_for(path), [&] {
+    return io::guarded(path, io::limits_for(path), [&] {
         const io::RunSummary run = io::check_run(path);
         return "run, " + counted(run.frames, "frame") + " of " +
                counted(run.particles, "particle") + ", " + counted(run.samples, "sample");
@@ -59,7 +48,7 @@ std::string describe_run(const Path& path)
 
 std::string describe_vtp(const Path& path)
 {
-    return io::guarded(path, limits_for(path), [&] {
+    return io::guarded(path, io::limits_for(path), [&] {
         const io::VtpSummary data = io::check_vtp(path);
         return "VTK polydata, " + counted(data.points, "point") + ", " +
                counted(data.cells, "cell") + ", " + counted(data.arrays, "array");
@@ -69,7 +58,7 @@ std::string describe_vtp(const Path& path)
 /// A checkpoint or the record of a step.
 std::string describe_sealed(const Path& path)
 {
-    return io::guarded(path, limits_for(path), [&] {
+    return io::guarded(path, io::limits_for(path), [&] {
         if (path.extension() == record_ending)
             return "record of the finished step " + read_record(path).identity.name;
         const Checkpoint checkpoint = read_checkpoint(path);

@@ -12,8 +12,19 @@ void Plan::need_state(const io::JsonNode& step) const
     if (!has_state) throw step.error("needs particles: put a step \"pack\" before it");
 }
 
-const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool with_frames) const
+void Plan::need_suspension(const io::JsonNode& step) const
 {
+    if (!has_suspension)
+        throw step.error("needs a \"suspension\" in the workflow: only stored runs do without");
+}
+
+const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool with_frames)
+{
+    const auto found = [&](const PlannedRun& run) -> const PlannedRun& {
+        needs.particles = run.particles;
+        if (with_frames) needs.frames_read = run.frames;
+        return run;
+    };
     const auto usable = [&](const PlannedRun& run) { return run.frames > 0 || !with_frames; };
     const std::string wanted = with_frames ? "\"shear\"" : "\"shear\" or \"equilibrate\"";
     if (of.empty()) {
@@ -21,15 +32,15 @@ const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool
         if (last == runs.rend())
             throw step.error("needs a run: put a step " + wanted + " before it");
         of = last->name;
-        return *last;
+        return found(*last);
     }
     std::vector<std::string_view> names;
     for (const PlannedRun& run : runs)
         if (usable(run)) names.push_back(run.name);
     if (names.empty()) throw step.error("needs a run: put a step " + wanted + " before it");
     const std::size_t index = step.member("of").word(names);
-    return *std::find_if(runs.begin(), runs.end(),
-                         [&](const PlannedRun& run) { return run.name == names[index]; });
+    return found(*std::find_if(runs.begin(), runs.end(),
+                               [&](const PlannedRun& run) { return run.name == names[index]; }));
 }
 
 const Run& Context::run(const std::string& name) const
@@ -157,7 +168,17 @@ std::vector<io::Field> workflow_fields(Workflow& workflow, std::string& schema)
     return f.list();
 }
 
-Workflow checked_workflow(const io::JsonDocument& document, const std::string& default_name)
+/// Then the suspension is that of the run.
+bool begins_with_a_stored_run(const io::JsonNode& workflow)
+{
+    const auto steps = workflow.find("steps");
+    if (!steps || !steps->is_array() || steps->size() == 0) return false;
+    const io::JsonNode first = steps->element(0);
+    return first.is_object() && first.has("step") && first.member("step").is_text() &&
+           first.member("step").text() == "stored_run";
+}
+
+Workflow checked_workflow(const io::JsonDocument& document, const std::filesystem::path& path)
 {
     const io::JsonNode root = document.root();
     Workflow workflow;
@@ -166,8 +187,9 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
     root.refuse_other_keys({"$schema", "name", "description", "suspension", "steps"});
     for (const io::Field& field : workflow_fields(workflow, schema))
         if (const auto node = root.find(field.name)) field.read(*node);
-    if (workflow.name.empty()) workflow.name = default_name;
-    workflow.suspension->check(root.member("suspension"));
+    if (workflow.name.empty()) workflow.name = path.stem().string();
+    if (root.has("suspension") || !begins_with_a_stored_run(root))
+        workflow.suspension->check(root.member("suspension"));
 
     std::vector<StepText> texts;
     for (const io::JsonNode& node : root.member("steps").elements({1, most_steps}))
@@ -180,10 +202,15 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
     for (const StepText& text : texts) workflow.steps.push_back(make_step(text.node));
     name_steps(workflow.steps, texts);
     Plan plan{.suspension = *workflow.suspension,
+              .has_suspension = root.has("suspension"),
+              .folder = path.parent_path(),
               .step_name = "",
               .has_state = false,
+              .particles = 0,
               .volume_fraction = 0,
+              .narrowest_box = 0,
               .changes_state = false,
+              .inputs = {},
               .needs = {},
               .runs = {}};
     for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -191,9 +218,12 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
         read_step(step, texts[i]);
         plan.step_name = step.name;
         plan.changes_state = false;
+        plan.inputs.clear();
         plan.needs = {};
         step.validate(texts[i].node, plan);
         step.changes_state = plan.changes_state;
+        step.inputs = plan.inputs;
+        if (plan.needs.particles == 0) plan.needs.particles = plan.particles;
         step.needs = plan.needs;
     }
     return workflow;
@@ -225,13 +255,19 @@ Workflow read_workflow(const std::filesystem::path& path)
 
 Workflow read_workflow(const io::JsonDocument& document, const std::filesystem::path& path)
 {
-    return checked_workflow(document, path.stem().string());
+    return checked_workflow(document, path);
 }
 
 Workflow parse_workflow(const std::string& text, const std::string& file)
 {
-    return checked_workflow(io::JsonDocument::parse(text, file),
-                            std::filesystem::path(file).stem().string());
+    return checked_workflow(io::JsonDocument::parse(text, file), file);
+}
+
+std::vector<std::string> Workflow::step_names() const
+{
+    std::vector<std::string> names;
+    for (const Step& step : steps) names.push_back(step.name);
+    return names;
 }
 
 nlohmann::ordered_json Workflow::resolved() const

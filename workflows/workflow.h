@@ -22,6 +22,7 @@ struct Workflow {
     std::unique_ptr<Suspension> suspension;  // steps refer to it
     std::vector<Step> steps;
 
+    std::vector<std::string> step_names() const;
     /// All parameters with their defaults filled in: a workflow file that repeats this one.
     nlohmann::ordered_json resolved() const;
 };

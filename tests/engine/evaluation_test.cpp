@@ -308,6 +308,27 @@ TEST(Evaluation, TwoDistantRepellingSpheresFeelStokesDrag)
     EXPECT_NEAR(e.nonaffine[1][0], force / (6 * pi * 1.4), 1e-12);
 }
 
+TEST(Evaluation, AMirroredStateFlowsLikeTheOriginalInReverse)
+{
+    const State s = frictional_state();
+    Model model;
+    model.stiffness_scale = StiffnessScale::fixed;
+    model.rolling_friction = 0.2;
+    model.rolling_stiffness = 50;
+    State turned = s;
+    for (Contact& contact : turned.contacts) contact.rolling = 0.001 * contact.spring;
+    const State mirror = mirrored(turned);
+    Workspace first(exact), second(exact);
+    const DetailedEvaluation back = evaluate_in_detail(turned, model, ImposedStress{-3}, first);
+    const DetailedEvaluation forth = evaluate_in_detail(mirror, model, ImposedStress{3}, second);
+    const double rate = back.evaluation.shear_rate;
+    EXPECT_LT(rate, 0);
+    EXPECT_NEAR(forth.evaluation.shear_rate, -rate, 1e-9 * std::abs(rate));
+    const Sample a = make_sample(turned, back), b = make_sample(mirror, forth);
+    EXPECT_NEAR(b.stress_contact, -a.stress_contact, 1e-9 * std::abs(a.stress_contact));
+    EXPECT_NEAR(b.particle_pressure, a.particle_pressure, 1e-9 * std::abs(a.particle_pressure));
+}
+
 TEST(Evaluation, LoadingAStoredStateChangesNothing)
 {
     const State s = frictional_state();

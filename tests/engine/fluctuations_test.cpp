@@ -53,6 +53,21 @@ TEST(Fluctuations, SkewnessOfKnownSeries)
     EXPECT_NEAR(fluctuations(std::vector<double>{1, 2, 3, 4, 5}).skewness, 0, 1e-12);
 }
 
+// Rare large excursions: an exponential distribution has skewness 2 and excess kurtosis 6.
+TEST(Fluctuations, KurtosisTellsNormalFromIntermittentSeries)
+{
+    const Fluctuations calm = fluctuations(autoregressive(0, 20000, 1));
+    EXPECT_NEAR(calm.kurtosis, -0.1, 4 * calm.kurtosis_error);  // of a sum of twelve
+    EXPECT_NEAR(calm.skewness, 0, 4 * calm.skewness_error);
+    support::Random random(2);
+    std::vector<double> series;
+    for (int k = 0; k < 200000; ++k) series.push_back(-std::log(1 - random.uniform(0, 1)));
+    const Fluctuations wild = fluctuations(series);
+    EXPECT_NEAR(wild.skewness, 2, 0.1);
+    EXPECT_NEAR(wild.kurtosis, 6, 0.8);
+    EXPECT_NEAR(calm.kurtosis_error, std::sqrt(24. / 20000), 0.2 * std::sqrt(24. / 20000));
+}
+
 TEST(PowerLaw, FindsTheExponentWithItsError)
 {
     const std::vector<double> x{500, 2000, 4500};

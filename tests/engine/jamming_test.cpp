@@ -1,5 +1,6 @@
 #include "engine/jamming.h"
 
+#include "engine/error.h"
 #include "engine/step.h"
 #include "tests/support/random_state.h"
 
@@ -43,6 +44,25 @@ TEST(Jamming, ASuspensionAboveItsShearJammingDensityJamsAndCarriesTheStressByFor
     const Sample sample = make_sample(s, d);
     EXPECT_NEAR((sample.stress_contact + sample.stress_repulsion) / 20, 1, 1e-3);
     EXPECT_GT(sample.contact_number, 3);
+}
+
+TEST(Jamming, TheStressOfJammingIsBracketed)
+{
+    int asked = 0;
+    const auto jams_above = [&](double threshold) {
+        return [&asked, threshold](double stress) { return ++asked, stress >= threshold; };
+    };
+    const JammingBracket found = bracket_jamming_stress(0.1, 100, 1.1, jams_above(7));
+    EXPECT_LT(found.flows, 7);
+    EXPECT_GE(found.jams, 7);
+    EXPECT_LE(found.jams / found.flows, 1.1);
+    EXPECT_EQ(asked, 2 + 7);  // ln 1000/2^7 < ln 1.1 < ln 1000/2^6
+    EXPECT_EQ(bracket_jamming_stress(1, 10, 1.1, jams_above(0.5)).jams, 1);
+    EXPECT_EQ(bracket_jamming_stress(1, 10, 1.1, jams_above(0.5)).flows, 0);
+    EXPECT_EQ(bracket_jamming_stress(1, 10, 1.1, jams_above(20)).flows, 10);
+    EXPECT_EQ(bracket_jamming_stress(1, 10, 1.1, jams_above(20)).jams, 0);
+    EXPECT_THROW(bracket_jamming_stress(2, 1, 1.1, jams_above(1)), Error);
+    EXPECT_THROW(bracket_jamming_stress(1, 2, 1, jams_above(1)), Error);
 }
 
 class StiffCorner : public testing::TestWithParam<int> {};

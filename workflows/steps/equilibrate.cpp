@@ -48,7 +48,8 @@ struct Equilibrate {
                                                   ", got " + io::number_text(window));
         plan.changes_state = true;
         plan.needs.frames = 1;
-        plan.runs.push_back({plan.step_name, control, plan.volume_fraction, maximum_strain, 0});
+        plan.runs.push_back(
+            {plan.step_name, control, plan.particles, plan.volume_fraction, maximum_strain, 0});
     }
 
     /// Compares the last two windows of the series.
@@ -67,8 +68,9 @@ struct Equilibrate {
 
     void run(Context& context) const
     {
-        const ShearingTask task = shearing.task(maximum_strain, 0, context.threads);
-        RunFiles files(context, task.control, false);
+        const ShearingTask task =
+            shearing.task(context.suspension.model, maximum_strain, 0, context.threads);
+        RunFiles files(context, task.model, task.control, false);
         bool stationary = false;
         const ShearingResult result =
             shear(context, task, files, [&] { return stationary = is_stationary(files.series()); });

@@ -1,8 +1,7 @@
 // Step "pack": a random packing without overlaps at exactly the asked volume fraction.
-#include "engine/packing.h"
 #include "io/case_file.h"
 #include "workflows/checkpoint.h"
-#include "workflows/pictures.h"
+#include "workflows/start.h"
 #include "workflows/steps.h"
 
 #include <algorithm>
@@ -12,52 +11,20 @@ namespace sigmaflow::workflows {
 
 namespace {
 
-double largest_radius(const PackingParameters& packing)
-{
-    if (packing.radii.empty()) return packing.small_volume_share < 1 ? packing.size_ratio : 1;
-    return *std::max_element(packing.radii.begin(), packing.radii.end());
-}
-
 struct Pack {
-    std::optional<double> volume_fraction;
-    std::optional<std::uint64_t> seed;
+    Start start;
 
-    void describe(io::Fields& f)
-    {
-        f("volume_fraction", volume_fraction, io::above_to(0, 1), "-",
-          "instead of that of the suspension");
-        f("seed", seed, "instead of that of the suspension");
-    }
-
-    PackingParameters packing(const Suspension& suspension) const
-    {
-        PackingParameters packing = suspension.packing;
-        packing.volume_fraction = volume_fraction.value_or(packing.volume_fraction);
-        packing.seed = seed.value_or(packing.seed);
-        return packing;
-    }
+    void describe(io::Fields& f) { start.describe(f); }
 
     void validate(const io::JsonNode& node, Plan& plan)
     {
-        if (const auto value = node.find("volume_fraction"))
-            plan.suspension.check_volume_fraction(*volume_fraction, *value);
-        const PackingParameters parameters = packing(plan.suspension);
-        const Model& model = plan.suspension.model;
-        const double range = std::max(model.lubrication_range, model.repulsion_range);
-        const double least = 2 * largest_radius(parameters) * (2 + range);
-        const double narrowest = packing_box(parameters).minCoeff();
-        if (narrowest < least)
-            throw node.error("too few particles: the box would be " + short_number(narrowest) +
-                             " a wide, must be >= " + io::number_text(least) +
-                             " a, twice the distance up to which two of the largest spheres "
-                             "interact");
+        start.check(node, plan);
         plan.has_state = plan.changes_state = true;
-        plan.volume_fraction = parameters.volume_fraction;
     }
 
     void run(Context& context) const
     {
-        const PackingParameters parameters = packing(context.suspension);
+        const PackingParameters parameters = start.packing(context.suspension);
         // the smallest xi goes from about -1 to -0.01, ever more slowly
         const auto report = [&](int iteration, double smallest_xi) {
             context.keeper.stop_if_asked();

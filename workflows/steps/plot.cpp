@@ -13,13 +13,6 @@ namespace {
 
 constexpr render::Colour mean_colour{213, 94, 0};
 
-const SampleField& field_named(std::string_view name)
-{
-    for (const SampleField& field : sample_fields())
-        if (field.name == name) return field;
-    throw Error(ErrorKind::internal, std::string(name), "no such scalar");
-}
-
 struct Plot {
     std::string of, x = "strain", y = "shear_rate";
     bool show_start_up = true, logarithmic = false;
@@ -27,10 +20,8 @@ struct Plot {
 
     void describe(io::Fields& f)
     {
-        std::vector<std::string_view> names;
-        for (const SampleField& field : sample_fields()) names.push_back(field.name);
         f("of", of, 64, "name of a shearing step; default: the last one before this step");
-        f("y", y, names, "scalar of the time series");
+        f("y", y, field_names(), "scalar of the time series");
         f("x", x, std::vector<std::string_view>{"strain", "time"}, "against strain or time");
         f("show_start_up", show_start_up,
           "also the run that this one continues, e.g. equilibrate, at negative strains");

@@ -32,15 +32,16 @@ struct Shear {
                 "gives more than 99999 frames, the strain is " + io::number_text(strain));
         plan.changes_state = true;
         plan.needs.frames = std::floor(strain / frame_interval) + 2;
-        plan.runs.push_back(
-            {plan.step_name, control, plan.volume_fraction, strain, plan.needs.frames});
+        plan.runs.push_back({plan.step_name, control, plan.particles, plan.volume_fraction, strain,
+                             plan.needs.frames});
     }
 
     void run(Context& context) const
     {
-        const ShearingTask task = shearing.task(strain, frame_interval, context.threads);
+        const ShearingTask task =
+            shearing.task(context.suspension.model, strain, frame_interval, context.threads);
         const Control& control = task.control;
-        RunFiles files(context, control, true);
+        RunFiles files(context, task.model, control, true);
         const ShearingResult result = shear(context, task, files);
         Run& run = files.finish();
         run.jammed = result.outcome == Outcome::jammed;

@@ -41,7 +41,6 @@ struct Snapshot {
         if (strain && *strain > run.strain)
             throw node.member("strain").wrong("must be <= " + io::number_text(run.strain) +
                                               ", the strain of " + io::in_quotes(of));
-        plan.needs.frames_read = run.frames;
         plan.needs.drawn_pixels = size.pixels();
     }
 

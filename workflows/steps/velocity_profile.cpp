@@ -100,7 +100,6 @@ struct VelocityProfileStep {
             throw node.member("from_strain")
                 .wrong("must be <= " + io::number_text(run.strain) + ", the strain of " +
                        io::in_quotes(of));
-        plan.needs.frames_read = run.frames;
         plan.needs.plotted_pixels = size.pixels();
     }
 

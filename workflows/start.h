@@ -1,0 +1,26 @@
+// workflows/start.h -- the packing that a step begins with: that of the suspension, or with some of
+// its numbers replaced.
+#pragma once
+#include "engine/packing.h"
+#include "workflows/step.h"
+
+#include <optional>
+
+namespace sigmaflow::workflows {
+
+struct Start {
+    std::optional<int> particles;
+    std::optional<double> volume_fraction;
+    std::optional<std::uint64_t> seed;
+
+    void describe(io::Fields& f);
+    PackingParameters packing(const Suspension& suspension) const;
+    /// Sets particles, volume fraction and box of the plan. Errors: input (denser than random close
+    /// packing, a box too small for the range of the forces, both radii and particles).
+    void check(const io::JsonNode& node, Plan& plan) const;
+};
+
+/// Twice the distance up to which two of the largest spheres interact [a]: no box may be narrower.
+double narrowest_box_allowed(const Suspension& suspension, const Model& model);
+
+}

@@ -1,0 +1,348 @@
+// Step "jamming": above which stress does a suspension jam, and does it flow again?
+//
+// Each start packs with a seed of its own and shears at the lowest stress. From there every stress
+// is tried, and the highest one that flows is bracketed by bisection. The state that jammed at the
+// lowest stress is then tried at the lowest stress (unjamming) and at its own stress in the other
+// direction (reversal, in a mirror). Starts and volume fractions are parts (workflows/parts.h).
+#include "engine/jamming.h"
+#include "engine/archive.h"
+#include "engine/ensemble.h"
+#include "engine/random.h"
+#include "engine/value.h"
+#include "io/atomic_file.h"
+#include "workflows/parts.h"
+#include "workflows/pictures.h"
+#include "workflows/shearing.h"
+#include "workflows/start.h"
+#include "workflows/steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sigmaflow::workflows {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One stress, tried.
+struct Tried {
+    double stress = 0;
+    Outcome outcome = Outcome::undecided;
+    double strain = 0;          // when it ended [-]
+    double viscosity = 0;       // of the last window [eta0]; 0: no window
+    double force_residual = 0;  // at its end
+    long steps = 0;
+};
+
+/// One start at one volume fraction.
+struct Found {
+    double volume_fraction = 0;
+    std::uint64_t seed = 0;
+    bool is_packed = true;  // there is a packing without overlaps
+    JammingBracket bracket;
+    std::vector<Tried> tried;
+    bool has_jammed = false;
+    Tried unjamming, reversal;  // if it has jammed
+};
+
+template <class Archive>
+void archive(Archive& a, Tried& t)
+{
+    a(t.stress, t.outcome, t.strain, t.viscosity, t.force_residual, t.steps);
+}
+
+template <class Archive>
+void archive(Archive& a, Found& f)
+{
+    a(f.volume_fraction, f.seed, f.is_packed, f.bracket.flows, f.bracket.jams, f.tried,
+      f.has_jammed, f.unjamming, f.reversal);
+}
+
+/// A volume fraction over its starts.
+struct Summary {
+    double volume_fraction = 0;
+    int starts = 0, unpacked = 0;  // without a packing
+    int jam = 0, always = 0;       // that jam at all; at the lowest stress already
+    int unjam = 0, reverse = 0;    // that flow again
+    std::vector<double> stresses;  // middles of the brackets with two ends
+    Value stress;                  // geometric mean of these, if there are any
+};
+
+std::vector<Summary> summaries_of(const std::vector<Found>& all)
+{
+    std::vector<Summary> result;
+    for (const Found& f : all) {
+        if (result.empty() || result.back().volume_fraction != f.volume_fraction)
+            result.push_back({.volume_fraction = f.volume_fraction, .stresses = {}, .stress = {}});
+        Summary& s = result.back();
+        ++s.starts;
+        s.unpacked += !f.is_packed;
+        if (!f.is_packed) continue;
+        s.jam += f.has_jammed;
+        s.always += f.bracket.flows == 0;
+        s.unjam += f.has_jammed && f.unjamming.outcome == Outcome::flowing;
+        s.reverse += f.has_jammed && f.reversal.outcome == Outcome::flowing;
+        if (f.bracket.flows > 0 && f.bracket.jams > 0)
+            s.stresses.push_back(std::sqrt(f.bracket.flows * f.bracket.jams));
+    }
+    for (Summary& s : result) {
+        if (s.stresses.empty()) continue;
+        std::vector<std::vector<double>> logarithms;
+        for (double stress : s.stresses) logarithms.push_back({std::log(stress)});
+        const EnsembleMean mean = ensemble_mean(logarithms);
+        s.stress.mean = std::exp(mean.mean[0]);
+        s.stress.standard_error = s.stress.mean * mean.standard_error[0];
+    }
+    return result;
+}
+
+std::string csv_text(const std::vector<Found>& all)
+{
+    std::string text =
+        "# each stress that was tried; flows_up_to, jams_from: the bracket of the start (0: not "
+        "known); viscosity [eta0] and force residual: of the last window\n"
+        "volume_fraction,seed,flows_up_to,jams_from,test,stress,outcome,strain,viscosity,"
+        "force_residual,steps\n";
+    for (const Found& f : all) {
+        const auto row = [&](const char* test, const Tried& t) {
+            text += io::number_text(f.volume_fraction) + "," + std::to_string(f.seed) + "," +
+                    io::number_text(f.bracket.flows) + "," + io::number_text(f.bracket.jams) + "," +
+                    test + "," + io::number_text(t.stress) + "," +
+                    std::string(outcome_name(t.outcome)) + "," + io::number_text(t.strain) + "," +
+                    io::number_text(t.viscosity) + "," + io::number_text(t.force_residual) + "," +
+                    std::to_string(t.steps) + "\n";
+        };
+        for (const Tried& t : f.tried) row("bisection", t);
+        if (!f.has_jammed) continue;
+        row("unjamming", f.unjamming);
+        row("reversal", f.reversal);
+    }
+    return text;
+}
+
+struct Jamming {
+    Start start;
+    std::vector<double> volume_fractions;
+    double lowest_stress = 0.5, highest_stress = 50, ratio = 1.1;
+    double strain_before = 1, strain = 2;
+    int starts = 3;
+    PictureSize size{1440, 1080};
+
+    void describe(io::Fields& f)
+    {
+        start.describe(f);
+        f("volume_fractions", volume_fractions, io::Length{1, 1000}, io::above_to(0, 1), "-",
+          "to be searched, instead of one");
+        f("starts", starts, io::Integers{1, 10'000}, "-",
+          "packings at each, with seeds made from that of the suspension");
+        f("lowest_stress", lowest_stress, io::between(1e-6, 1e9), "sigma0",
+          "of the search, and of the shear before it");
+        f("highest_stress", highest_stress, io::between(1e-6, 1e9), "sigma0", "of the search");
+        f("ratio", ratio, io::between(1.001, 10), "-",
+          "the search ends when jammed and flowing stress differ by this factor");
+        f("strain_before", strain_before, io::above_to(0, 1e4), "-",
+          "strain of each start at the lowest stress");
+        f("strain", strain, io::above_to(0, 1e4), "-", "what flows for this strain does not jam");
+        size.describe(f);
+    }
+
+    void validate(const io::JsonNode& node, Plan& plan)
+    {
+        if (const auto list = node.find("volume_fractions")) {
+            if (node.has("volume_fraction"))
+                throw list->error("volume_fraction and volume_fractions exclude each other");
+            for (const io::JsonNode& value : list->elements())
+                plan.suspension.check_volume_fraction(value.number(), value);
+        }
+        if (highest_stress <= lowest_stress)
+            throw node.error_at_key("highest_stress",
+                                    "must be > lowest_stress, " + io::number_text(lowest_stress));
+        if (plan.suspension.model.contact_hydrodynamics == ContactHydrodynamics::dashpot)
+            throw node.error("needs contact_hydrodynamics \"lubrication\"");
+        Plan own = plan;  // the packings of this step are no state for the next one
+        for (double phi : fractions(plan.suspension)) {
+            Start one = start;
+            one.volume_fraction = phi;
+            one.check(node, own);
+            plan.needs.volume_fraction = std::max(plan.needs.volume_fraction, phi);
+        }
+        plan.needs.particles = own.particles;
+        plan.needs.plotted_pixels = size.pixels();
+    }
+
+    /// In ascending order.
+    std::vector<double> fractions(const Suspension& suspension) const
+    {
+        std::vector<double> result = volume_fractions;
+        if (result.empty())
+            result.push_back(start.volume_fraction.value_or(suspension.packing.volume_fraction));
+        std::sort(result.begin(), result.end());
+        return result;
+    }
+
+    Tried attempt(State& state, const Model& model, double stress, double until,
+                  const Pulse& pulse) const
+    {
+        ShearingParameters parameters;
+        parameters.stress = stress;
+        parameters.series_interval = until;  // no samples are needed
+        const Trial trial = try_shear(state, parameters.task(model, until, 0, 1), pulse);
+        Tried tried{.stress = stress,
+                    .outcome = trial.result.outcome,
+                    .strain = state.strain,
+                    .steps = trial.result.steps};
+        if (const auto& window = trial.result.window) {
+            tried.viscosity = window->strain_gain > 0 ? window->mean_viscosity : 0;
+            tried.force_residual = window->force_residual;
+        }
+        return tried;
+    }
+
+    Found search(const Suspension& suspension, double volume_fraction, int number,
+                 const Pulse& pulse) const
+    {
+        PackingParameters packing = start.packing(suspension);
+        packing.volume_fraction = volume_fraction;
+        constexpr std::uint32_t stream = 0x4a41;  // of these seeds
+        packing.seed = static_cast<std::uint64_t>(
+            uniform(packing.seed, stream, static_cast<std::uint64_t>(number)) * 0x1p53);
+        Found found{.volume_fraction = volume_fraction,
+                    .seed = packing.seed,
+                    .bracket = {},
+                    .tried = {},
+                    .unjamming = {},
+                    .reversal = {}};
+        State sheared;
+        try {
+            sheared = random_packing(packing, [&](int, double) { pulse(); });
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::numerics) throw;
+            found.is_packed = false;
+            return found;
+        }
+        const Model& model = suspension.model;
+        found.tried.push_back(attempt(sheared, model, lowest_stress, strain_before, pulse));
+        State jammed;
+        double jammed_stress = 0;
+        const auto jams = [&](double stress) {
+            if (stress == lowest_stress)  // known from the shear before
+                return found.tried.front().outcome != Outcome::flowing
+                           ? (jammed = sheared, jammed_stress = stress, true)
+                           : false;
+            State state = sheared;
+            found.tried.push_back(attempt(state, model, stress, strain, pulse));
+            if (found.tried.back().outcome == Outcome::flowing) return false;
+            jammed = std::move(state);
+            jammed_stress = stress;
+            return true;
+        };
+        found.bracket = bracket_jamming_stress(lowest_stress, highest_stress, ratio, jams);
+        found.has_jammed = jammed_stress > 0;
+        if (!found.has_jammed) return found;
+        State released = jammed, reversed = mirrored(jammed);
+        found.unjamming = attempt(released, model, lowest_stress, strain_before, pulse);
+        found.reversal = attempt(reversed, model, jammed_stress, strain, pulse);
+        return found;
+    }
+
+    std::vector<Found> search_all(Context& context) const
+    {
+        const std::vector<double> all = fractions(context.suspension);
+        std::vector<Found> result(all.size() * static_cast<std::size_t>(starts));
+        const Parts parts(context);
+        compute_side_by_side(
+            context, static_cast<int>(result.size()), [&](int k, const Pulse& pulse) {
+                const double volume_fraction = all[static_cast<std::size_t>(k / starts)];
+                const std::string bytes = parts.compute(std::to_string(k), [&] {
+                    Found found = search(context.suspension, volume_fraction, k % starts, pulse);
+                    ArchiveWriter a;
+                    a(found);
+                    return a.bytes();
+                });
+                ArchiveReader a(bytes);
+                a(result[static_cast<std::size_t>(k)]);
+            });
+        return result;
+    }
+
+    render::Plot plot(const std::vector<Found>& all, const std::vector<Summary>& summaries,
+                      int particles) const
+    {
+        render::Plot plot = size.plot();
+        plot.title = "Stress above which the suspension jams, $n$ = " + std::to_string(particles);
+        plot.x.title = "volume fraction $ϕ$";
+        plot.y.title = "shear stress $σ$/$σ$_{0}";
+        plot.y.logarithmic = true;
+        plot.y.minimum = lowest_stress / 1.3;
+        plot.y.maximum = highest_stress * 1.3;
+        render::Series flowing, jammed, mean;
+        flowing.label = "flows";
+        jammed.label = "jams";
+        flowing.marker = render::Marker::circle;
+        flowing.open_marker = true;
+        jammed.marker = render::Marker::cross;
+        for (const Found& f : all)
+            for (const Tried& t : f.tried) {
+                render::Series& series = t.outcome == Outcome::flowing ? flowing : jammed;
+                series.x.push_back(f.volume_fraction);
+                series.y.push_back(t.stress);
+            }
+        flowing.line = jammed.line = render::Line::none;
+        mean.label = "mean over the starts";
+        mean.line = render::Line::dashed;
+        for (const Summary& s : summaries) {
+            if (s.stresses.empty()) continue;
+            mean.x.push_back(s.volume_fraction);
+            mean.y.push_back(s.stress.mean);
+            mean.y_error.push_back(s.stress.standard_error);
+        }
+        for (render::Series* series : {&flowing, &jammed, &mean})
+            if (!series->x.empty()) plot.series.push_back(std::move(*series));
+        return plot;
+    }
+
+    void report(Context& context, const std::vector<Summary>& summaries) const
+    {
+        bool jams = false, all_flow_again = true;
+        auto& list = context.results["volume_fractions"] = Json::array();
+        for (const Summary& s : summaries) {
+            jams |= s.jam > 0;
+            all_flow_again &= s.unjam == s.jam;
+            Json json{{"volume_fraction", s.volume_fraction}, {"starts", s.starts},
+                      {"without_packing", s.unpacked},        {"jam", s.jam},
+                      {"jam_at_the_lowest", s.always},        {"flow_again_at_the_lowest", s.unjam},
+                      {"flow_in_reverse", s.reverse}};
+            if (!s.stresses.empty())
+                json["jamming_stress"] = {{"mean", s.stress.mean},
+                                          {"standard_error", s.stress.standard_error},
+                                          {"unit", "sigma0"}};
+            list.push_back(std::move(json));
+        }
+        context.results["outcome"] = !jams ? "flows at all stresses"
+                                     : all_flow_again
+                                         ? "jams, and flows again at the lowest stress"
+                                         : "jams, and not all flow again at the lowest stress";
+    }
+
+    void run(Context& context) const
+    {
+        const std::vector<Found> all = search_all(context);
+        const std::vector<Summary> summaries = summaries_of(all);
+        io::write_file(context.folder.file(context.step_name + ".csv"), csv_text(all));
+        report(context, summaries);
+        write_plot(context, context.step_name,
+                   plot(all, summaries, start.packing(context.suspension).particles));
+    }
+};
+
+}
+
+StepKind jamming_step()
+{
+    return step_kind<Jamming>(
+        "jamming",
+        "stress above which a suspension jams, by bisection, and whether that is undone");
+}
+
+}
