@@ -93,25 +93,17 @@ struct Blocking {
 /// Needs a series that changes. Without convergence: the largest error of all block lengths.
 Blocking blocking(std::span<const double> series)
 {
-    std::vector<double> block(series.begin(), series.end());
     const double n = static_cast<double>(series.size());
-    double first_square = 0, largest_square = 0, length = 1;
-    while (block.size() >= 2) {
-        const std::vector<double> deviation = deviations_from_mean(block);
-        const double blocks = static_cast<double>(block.size());
-        const double square = autocovariance(deviation, 0) / (blocks - 1);
-        if (length == 1) first_square = square;
-        largest_square = std::max(largest_square, square);
-        const double inefficiency = square / first_square;  // -> 2 tau
+    double largest = 0, first = 0;
+    for (const BlockError& block : block_errors(series)) {
+        if (block.length == 1) first = block.error;
+        largest = std::max(largest, block.error);
+        const double length = block.length;
+        const double inefficiency = std::pow(block.error / first, 2);  // -> 2 tau
         if (length * length * length > 2 * n * inefficiency * inefficiency)
-            return {std::sqrt(square), true};
-
-        for (std::size_t k = 0; k < block.size() / 2; ++k)
-            block[k] = (block[2 * k] + block[2 * k + 1]) / 2;
-        block.resize(block.size() / 2);
-        length *= 2;
+            return {block.error, true};
     }
-    return {std::sqrt(largest_square), false};
+    return {largest, false};
 }
 
 /// Samples that count in the search for the start-up.
@@ -151,6 +143,36 @@ Estimate estimate_mean(std::span<const double> series)
     result.standard_error = std::max(result.autocorrelation_error, result.blocking_error);
     result.reliable =
         correlation.converged && blocked.converged && result.effective_samples >= fewest_effective;
+    return result;
+}
+
+std::vector<double> autocorrelation(std::span<const double> series, int lags)
+{
+    require_finite(series);
+    std::vector<double> result;
+    if (series.empty()) return result;
+    const std::vector<double> deviation = deviations_from_mean(series);
+    const bool changes = !never_changes(series);
+    const double variance = autocovariance(deviation, 0);
+    const auto last = std::min(static_cast<std::size_t>(std::max(lags, 0)), series.size() - 1);
+    for (std::size_t lag = 0; lag <= last; ++lag)
+        result.push_back(changes ? autocovariance(deviation, lag) / variance : (lag == 0 ? 1 : 0));
+    return result;
+}
+
+std::vector<BlockError> block_errors(std::span<const double> series)
+{
+    require_finite(series);
+    std::vector<BlockError> result;
+    std::vector<double> block(series.begin(), series.end());
+    for (int length = 1; block.size() >= 2; length *= 2) {
+        const double blocks = static_cast<double>(block.size());
+        const double square = autocovariance(deviations_from_mean(block), 0) / (blocks - 1);
+        result.push_back({length, static_cast<int>(block.size()), std::sqrt(square)});
+        for (std::size_t k = 0; k < block.size() / 2; ++k)
+            block[k] = (block[2 * k] + block[2 * k + 1]) / 2;
+        block.resize(block.size() / 2);
+    }
     return result;
 }
 

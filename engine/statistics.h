@@ -13,6 +13,7 @@
 // Tests: AR(1) processes of known tau, coverage of the truth by one standard error.
 #pragma once
 #include <span>
+#include <vector>
 
 namespace sigmaflow {
 
@@ -32,6 +33,21 @@ struct Estimate {
 /// effective samples, or a window or a block length that did not converge within the series. Throws
 /// Error(numerics) for a sample that is not finite.
 Estimate estimate_mean(std::span<const double> series);
+
+/// rho(t) for t = 0 ... lags (fewer for a short series): the autocovariance over the variance, mean
+/// of the series subtracted, bias not removed. 1, 0, 0 ... for a series that never changes. Throws
+/// Error(numerics) for a sample that is not finite.
+std::vector<double> autocorrelation(std::span<const double> series, int lags);
+
+/// Standard error of the mean from means over blocks of 1, 2, 4 ... samples, as if these were
+/// independent: it rises to a plateau where they are. Down to two blocks; the last errors are known
+/// to about 1/sqrt(2 (blocks - 1)) of themselves.
+struct BlockError {
+    int length = 1;  // [samples]
+    int blocks = 0;
+    double error = 0;  // [unit of the samples]
+};
+std::vector<BlockError> block_errors(std::span<const double> series);
 
 /// Index of the first sample after the start-up: the cut that leaves the largest number of
 /// effective samples (Chodera, J. Chem. Theory Comput. 12, 1799, 2016). Candidates are 50 equally

@@ -30,14 +30,18 @@ std::vector<StepIdentity> identities(const Workflow& workflow)
                               .parameters = parameters.dump(),
                               .suspension = resolved["suspension"].dump(),
                               .key = {}};
-        std::string before = chain;
+        std::string before = step.inputs.empty() ? chain : "";
         if (const auto of = parameters.find("of"); of != parameters.end())
             for (const StepIdentity& earlier : result)
                 if (earlier.name == of->get<std::string>()) before = earlier.key;
         ArchiveWriter a;
         a(identity, before);
         identity.key = io::hexadecimal(io::checksum(a.bytes()));
-        if (step.changes_state || !step.inputs.empty()) chain = identity.key;
+        // what comes later depends on all stored runs before it, too
+        if (step.changes_state)
+            chain = identity.key;
+        else if (!step.inputs.empty())
+            chain += identity.key;
         result.push_back(std::move(identity));
     }
     return result;

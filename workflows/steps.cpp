@@ -7,12 +7,21 @@ namespace sigmaflow::workflows {
 
 std::span<const StepKind> step_kinds()
 {
-    static const std::array kinds{
-        pack_step(),        equilibrate_step(),  shear_step(),
-        step_stress_step(), stored_run_step(),   flow_curve_step(),
-        stability_step(),   fluctuations_step(), adaptive_flow_curve_step(),
-        compare_step(),     jamming_step(),      velocity_profile_step(),
-        snapshot_step(),    plot_step()};
+    static const std::array kinds{pack_step(),
+                                  equilibrate_step(),
+                                  shear_step(),
+                                  step_stress_step(),
+                                  stored_run_step(),
+                                  flow_curve_step(),
+                                  stability_step(),
+                                  fluctuations_step(),
+                                  adaptive_flow_curve_step(),
+                                  statistics_step(),
+                                  compare_step(),
+                                  jamming_step(),
+                                  velocity_profile_step(),
+                                  snapshot_step(),
+                                  plot_step()};
     return kinds;
 }
 

@@ -16,6 +16,7 @@ StepKind flow_curve_step();
 StepKind stability_step();
 StepKind fluctuations_step();
 StepKind adaptive_flow_curve_step();
+StepKind statistics_step();
 StepKind compare_step();
 StepKind jamming_step();
 StepKind step_stress_step();

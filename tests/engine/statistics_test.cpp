@@ -49,6 +49,38 @@ TEST(EstimateMean, FindsTheCorrelationTimeOfAutoregressiveProcesses)
     }
 }
 
+TEST(Autocorrelation, IsThatOfTheProcess)
+{
+    const double a = 0.9;
+    const std::vector<double> rho = autocorrelation(autoregressive(a, 7, 200000, 3), 30);
+    ASSERT_EQ(rho.size(), 31u);
+    EXPECT_EQ(rho[0], 1);
+    for (std::size_t lag = 0; lag < rho.size(); ++lag)
+        EXPECT_NEAR(rho[lag], std::pow(a, lag), 0.03) << lag;
+}
+
+TEST(Autocorrelation, OfShortAndConstantSeries)
+{
+    EXPECT_EQ(autocorrelation(std::vector<double>{}, 3), std::vector<double>{});
+    EXPECT_EQ(autocorrelation(std::vector<double>{2, 2, 2}, 9), (std::vector<double>{1, 0, 0}));
+    EXPECT_EQ(autocorrelation(std::vector<double>{1, -1}, 1), (std::vector<double>{1, -1}));
+}
+
+TEST(BlockErrors, RiseFromTheNaiveErrorToTheTrueOne)
+{
+    const double a = 0.8;
+    const int length = 1 << 17;
+    const std::vector<BlockError> errors = block_errors(autoregressive(a, 0, length, 4));
+    EXPECT_EQ(errors.size(), 17u);
+    EXPECT_NEAR(errors.front().error, 1 / std::sqrt(length), 0.02 / std::sqrt(length));
+    const double expected = std::sqrt(twice_tau(a) / length);
+    for (const BlockError& block : errors)
+        if (block.length >= 64 && block.blocks >= 128)
+            EXPECT_NEAR(block.error / expected, 1, 4 / std::sqrt(2. * block.blocks))
+                << block.length;
+    EXPECT_EQ(errors.back().blocks, 2);
+}
+
 TEST(EstimateMean, GivesTheTextbookErrorForWhiteNoise)
 {
     const int length = 10000;

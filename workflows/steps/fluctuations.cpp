@@ -37,6 +37,7 @@ struct Law {
 };
 
 struct FluctuationsStep {
+    static constexpr double largest_exponent_error = 0.3;
     static constexpr double largest_kurtosis = 3;  // excess; 6 for exponentially rare excursions
 
     std::string y = "shear_rate";
@@ -166,10 +167,14 @@ struct FluctuationsStep {
             context.results["exponent"] = {
                 {"mean", fit.exponent}, {"standard_error", fit.exponent_error}, {"unit", "-"}};
             context.results["chi2_per_degree"] = fit.chi2_per_degree;
-            const double distance = (fit.exponent + 1) / fit.exponent_error;
-            outcome += std::abs(distance) < 2 ? "; the variance falls as 1/n within two errors"
-                                              : "; the variance does not fall as 1/n, by " +
-                                                    short_number(std::abs(distance)) + " errors";
+            const double distance = std::abs(fit.exponent + 1) / fit.exponent_error;
+            if (fit.exponent_error > largest_exponent_error)
+                outcome += "; how the variance falls with n is undecided";
+            else if (distance < 2)
+                outcome += "; the variance falls as 1/n within two errors";
+            else
+                outcome +=
+                    "; the variance does not fall as 1/n, by " + short_number(distance) + " errors";
         }
         context.results["outcome"] = outcome;
     }
