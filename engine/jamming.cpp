@@ -1,5 +1,6 @@
 #include "engine/jamming.h"
 
+#include "engine/ensemble.h"
 #include "engine/error.h"
 #include "engine/workspace.h"
 
@@ -67,6 +68,22 @@ JammingBracket bracket_jamming_stress(double low, double high, double ratio,
         (jams(middle) ? high : low) = middle;
     }
     return {low, high};
+}
+
+Value jamming_stress(std::span<const JammingBracket> brackets)
+{
+    std::vector<std::vector<double>> middles;
+    double widths = 0;  // squared
+    for (const JammingBracket& b : brackets) {
+        if (!(b.flows > 0 && b.jams > b.flows))
+            throw Error(ErrorKind::input, "jamming stress", "needs brackets with two ends");
+        middles.push_back({(std::log(b.flows) + std::log(b.jams)) / 2});
+        widths += std::pow(std::log(b.jams / b.flows), 2);
+    }
+    const EnsembleMean mean = ensemble_mean(middles);
+    const double n = static_cast<double>(brackets.size());
+    const double stress = std::exp(mean.mean[0]);
+    return {stress, stress * std::hypot(mean.standard_error[0], std::sqrt(widths / 12) / n)};
 }
 
 }

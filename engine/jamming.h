@@ -9,8 +9,10 @@
 #pragma once
 #include "engine/evaluation.h"
 #include "engine/state.h"
+#include "engine/value.h"
 
 #include <functional>
+#include <span>
 
 namespace sigmaflow {
 
@@ -49,6 +51,11 @@ struct JammingBracket {
 /// jams(stress) asked for both ends first. Errors: input (needs 0 < low < high, ratio > 1).
 JammingBracket bracket_jamming_stress(double low, double high, double ratio,
                                       const std::function<bool(double)>& jams);
+
+/// The stress of jamming from the brackets of independent starts, at least one, all with two ends:
+/// the geometric mean of their middles. The error has the scatter of ln stress and the width of the
+/// brackets, in which the true value lies anywhere (variance width^2/12). Errors: input.
+Value jamming_stress(std::span<const JammingBracket> brackets);
 
 class JammingMonitor {
 public:

@@ -5,6 +5,7 @@
 #include "tests/support/random_state.h"
 
 #include <gtest/gtest.h>
+#include <cmath>
 
 namespace sigmaflow {
 
@@ -63,6 +64,33 @@ TEST(Jamming, TheStressOfJammingIsBracketed)
     EXPECT_EQ(bracket_jamming_stress(1, 10, 1.1, jams_above(20)).jams, 0);
     EXPECT_THROW(bracket_jamming_stress(2, 1, 1.1, jams_above(1)), Error);
     EXPECT_THROW(bracket_jamming_stress(1, 2, 1, jams_above(1)), Error);
+}
+
+// Thresholds that scatter by a factor of 1.2, found to a factor of 1.3: the error is the scatter of
+// the result over many repetitions.
+TEST(Jamming, TheStressOfJammingHasAnErrorFromScatterAndBrackets)
+{
+    support::Random random(4);
+    double pull2 = 0, mean_error = 0;
+    constexpr int repetitions = 400, starts = 8;
+    for (int k = 0; k < repetitions; ++k) {
+        std::vector<JammingBracket> brackets;
+        for (int i = 0; i < starts; ++i) {
+            double normal = -6;
+            for (int j = 0; j < 12; ++j) normal += random.uniform(0, 1);
+            const double threshold = 5 * std::pow(1.2, normal);
+            brackets.push_back(
+                bracket_jamming_stress(0.5 * random.uniform(0.8, 1), 60, 1.3,
+                                       [&](double stress) { return stress >= threshold; }));
+        }
+        const Value stress = jamming_stress(brackets);
+        pull2 += std::pow(std::log(stress.mean / 5) * stress.mean / stress.standard_error, 2);
+        mean_error += stress.standard_error / stress.mean / repetitions;
+    }
+    EXPECT_NEAR(pull2 / repetitions, 1, 0.4);  // eight starts: errors are known to a quarter
+    EXPECT_GT(mean_error, std::log(1.2) / std::sqrt(8));
+    EXPECT_THROW(jamming_stress(std::vector<JammingBracket>{{0, 1}}), Error);
+    EXPECT_THROW(jamming_stress({}), Error);
 }
 
 class StiffCorner : public testing::TestWithParam<int> {};

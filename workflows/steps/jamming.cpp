@@ -6,7 +6,6 @@
 // direction (reversal, in a mirror). Starts and volume fractions are parts (workflows/parts.h).
 #include "engine/jamming.h"
 #include "engine/archive.h"
-#include "engine/ensemble.h"
 #include "engine/random.h"
 #include "engine/value.h"
 #include "io/atomic_file.h"
@@ -65,8 +64,8 @@ struct Summary {
     int starts = 0, unpacked = 0;  // without a packing
     int jam = 0, always = 0;       // that jam at all; at the lowest stress already
     int unjam = 0, reverse = 0;    // that flow again
-    std::vector<double> stresses;  // middles of the brackets with two ends
-    Value stress;                  // geometric mean of these, if there are any
+    std::vector<JammingBracket> brackets;  // with two ends
+    Value stress;                          // if there are any
 };
 
 std::vector<Summary> summaries_of(const std::vector<Found>& all)
@@ -74,7 +73,7 @@ std::vector<Summary> summaries_of(const std::vector<Found>& all)
     std::vector<Summary> result;
     for (const Found& f : all) {
         if (result.empty() || result.back().volume_fraction != f.volume_fraction)
-            result.push_back({.volume_fraction = f.volume_fraction, .stresses = {}, .stress = {}});
+            result.push_back({.volume_fraction = f.volume_fraction, .brackets = {}, .stress = {}});
         Summary& s = result.back();
         ++s.starts;
         s.unpacked += !f.is_packed;
@@ -83,16 +82,11 @@ std::vector<Summary> summaries_of(const std::vector<Found>& all)
         s.always += f.bracket.flows == 0;
         s.unjam += f.has_jammed && f.unjamming.outcome == Outcome::flowing;
         s.reverse += f.has_jammed && f.reversal.outcome == Outcome::flowing;
-        if (f.bracket.flows > 0 && f.bracket.jams > 0)
-            s.stresses.push_back(std::sqrt(f.bracket.flows * f.bracket.jams));
+        if (f.bracket.flows > 0 && f.bracket.jams > 0) s.brackets.push_back(f.bracket);
     }
     for (Summary& s : result) {
-        if (s.stresses.empty()) continue;
-        std::vector<std::vector<double>> logarithms;
-        for (double stress : s.stresses) logarithms.push_back({std::log(stress)});
-        const EnsembleMean mean = ensemble_mean(logarithms);
-        s.stress.mean = std::exp(mean.mean[0]);
-        s.stress.standard_error = s.stress.mean * mean.standard_error[0];
+        if (s.brackets.empty()) continue;
+        s.stress = jamming_stress(s.brackets);
     }
     return result;
 }
@@ -292,7 +286,7 @@ struct Jamming {
         mean.label = "mean over the starts";
         mean.line = render::Line::dashed;
         for (const Summary& s : summaries) {
-            if (s.stresses.empty()) continue;
+            if (s.brackets.empty()) continue;
             mean.x.push_back(s.volume_fraction);
             mean.y.push_back(s.stress.mean);
             mean.y_error.push_back(s.stress.standard_error);
@@ -313,7 +307,7 @@ struct Jamming {
                       {"without_packing", s.unpacked},        {"jam", s.jam},
                       {"jam_at_the_lowest", s.always},        {"flow_again_at_the_lowest", s.unjam},
                       {"flow_in_reverse", s.reverse}};
-            if (!s.stresses.empty())
+            if (!s.brackets.empty())
                 json["jamming_stress"] = {{"mean", s.stress.mean},
                                           {"standard_error", s.stress.standard_error},
                                           {"unit", "sigma0"}};
