@@ -89,12 +89,7 @@ void ShearingParameters::describe(io::Fields& f)
 Control ShearingParameters::check(const io::JsonNode& node, Plan& plan, double strain) const
 {
     plan.need_state(node);
-    const Model changed = model.applied_to(plan.suspension.model);
-    if (const auto given = node.find("model")) {
-        io::check_model(changed, *given);
-        if (plan.narrowest_box < narrowest_box_allowed(plan.suspension, changed))
-            throw given->error("forces of this range need a wider box, more particles");
-    }
+    const Model changed = checked_model(model, node, plan);
     const Control control = io::checked_control(stress, rate, changed, node);
     if (scheme == Scheme::implicit &&
         changed.contact_hydrodynamics == ContactHydrodynamics::dashpot)

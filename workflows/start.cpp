@@ -14,6 +14,13 @@ double largest_radius(const PackingParameters& packing)
     return *std::max_element(packing.radii.begin(), packing.radii.end());
 }
 
+/// Twice the distance up to which two of the largest spheres interact [a].
+double narrowest_box_allowed(const Suspension& suspension, const Model& model)
+{
+    return 2 * largest_radius(suspension.packing) *
+           (2 + std::max(model.lubrication_range, model.repulsion_range));
+}
+
 }
 
 void Start::describe(io::Fields& f)
@@ -51,10 +58,15 @@ void Start::check(const io::JsonNode& node, Plan& plan) const
     plan.volume_fraction = parameters.volume_fraction;
 }
 
-double narrowest_box_allowed(const Suspension& suspension, const Model& model)
+Model checked_model(const io::ModelChanges& changes, const io::JsonNode& step, const Plan& plan)
 {
-    return 2 * largest_radius(suspension.packing) *
-           (2 + std::max(model.lubrication_range, model.repulsion_range));
+    const Model model = changes.applied_to(plan.suspension.model);
+    const auto given = step.find("model");
+    if (!given) return model;
+    io::check_model(model, *given);
+    if (plan.narrowest_box < narrowest_box_allowed(plan.suspension, model))
+        throw given->error("forces of this range need a wider box, more particles");
+    return model;
 }
 
 }

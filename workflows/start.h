@@ -2,6 +2,7 @@
 // its numbers replaced.
 #pragma once
 #include "engine/packing.h"
+#include "io/model_fields.h"
 #include "workflows/step.h"
 
 #include <optional>
@@ -20,7 +21,8 @@ struct Start {
     void check(const io::JsonNode& node, Plan& plan) const;
 };
 
-/// Twice the distance up to which two of the largest spheres interact [a]: no box may be narrower.
-double narrowest_box_allowed(const Suspension& suspension, const Model& model);
+/// The model of the suspension with the changes of a step, in the box of the plan. Errors: input
+/// (what check_model refuses, forces of longer range than the box has room for).
+Model checked_model(const io::ModelChanges& changes, const io::JsonNode& step, const Plan& plan);
 
 }

@@ -67,6 +67,7 @@ struct AdaptiveFlowCurve {
     int points = 6;
     CurveGoal goal;
     double strain = 3, maximum_strain = 30, confidence = 0.95;
+    io::ModelChanges model;
     PictureSize size;
 
     static constexpr double series_interval = 0.01;
@@ -87,6 +88,7 @@ struct AdaptiveFlowCurve {
         f("maximum_strain", maximum_strain, io::between(0.1, 1e5), "-", "of each run at most");
         f("confidence", confidence, io::between(0.5, 0.9999), "-",
           "of all statements on the curve together");
+        model.describe(f);
         size.describe(f);
     }
 
@@ -102,7 +104,7 @@ struct AdaptiveFlowCurve {
         if (maximum_strain < strain)
             throw node.error_at_key("maximum_strain",
                                     "must be >= strain, " + io::number_text(strain));
-        if (plan.suspension.model.contact_hydrodynamics == ContactHydrodynamics::dashpot)
+        if (checked_model(model, node, own).contact_hydrodynamics == ContactHydrodynamics::dashpot)
             throw node.error("needs contact_hydrodynamics \"lubrication\"");
         plan.needs.particles = own.particles;
         plan.needs.volume_fraction = own.volume_fraction;
@@ -126,7 +128,8 @@ struct AdaptiveFlowCurve {
         ShearingParameters parameters;
         parameters.stress = point.stress;
         parameters.series_interval = series_interval;
-        Trial trial = try_shear(stretch.end, parameters.task(suspension.model, until, 0, 1), pulse);
+        Trial trial = try_shear(
+            stretch.end, parameters.task(model.applied_to(suspension.model), until, 0, 1), pulse);
         stretch.outcome = trial.result.outcome;
         stretch.series = std::move(trial.series);
         return stretch;

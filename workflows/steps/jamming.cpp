@@ -61,9 +61,9 @@ void archive(Archive& a, Found& f)
 /// A volume fraction over its starts.
 struct Summary {
     double volume_fraction = 0;
-    int starts = 0, unpacked = 0;  // without a packing
-    int jam = 0, always = 0;       // that jam at all; at the lowest stress already
-    int unjam = 0, reverse = 0;    // that flow again
+    int starts = 0, unpacked = 0;          // without a packing
+    int jam = 0, always = 0;               // that jam at all; at the lowest stress already
+    int unjam = 0, reverse = 0;            // that flow again
     std::vector<JammingBracket> brackets;  // with two ends
     Value stress;                          // if there are any
 };
@@ -121,6 +121,7 @@ struct Jamming {
     double lowest_stress = 0.5, highest_stress = 50, ratio = 1.1;
     double strain_before = 1, strain = 2;
     int starts = 3;
+    io::ModelChanges model;
     PictureSize size{1440, 1080};
 
     void describe(io::Fields& f)
@@ -138,6 +139,7 @@ struct Jamming {
         f("strain_before", strain_before, io::above_to(0, 1e4), "-",
           "strain of each start at the lowest stress");
         f("strain", strain, io::above_to(0, 1e4), "-", "what flows for this strain does not jam");
+        model.describe(f);
         size.describe(f);
     }
 
@@ -152,13 +154,14 @@ struct Jamming {
         if (highest_stress <= lowest_stress)
             throw node.error_at_key("highest_stress",
                                     "must be > lowest_stress, " + io::number_text(lowest_stress));
-        if (plan.suspension.model.contact_hydrodynamics == ContactHydrodynamics::dashpot)
-            throw node.error("needs contact_hydrodynamics \"lubrication\"");
         Plan own = plan;  // the packings of this step are no state for the next one
         for (double phi : fractions(plan.suspension)) {
             Start one = start;
             one.volume_fraction = phi;
             one.check(node, own);
+            if (checked_model(model, node, own).contact_hydrodynamics ==
+                ContactHydrodynamics::dashpot)
+                throw node.error("needs contact_hydrodynamics \"lubrication\"");
             plan.needs.volume_fraction = std::max(plan.needs.volume_fraction, phi);
         }
         plan.needs.particles = own.particles;
@@ -175,13 +178,13 @@ struct Jamming {
         return result;
     }
 
-    Tried attempt(State& state, const Model& model, double stress, double until,
+    Tried attempt(State& state, const Model& of_all, double stress, double until,
                   const Pulse& pulse) const
     {
         ShearingParameters parameters;
         parameters.stress = stress;
         parameters.series_interval = until;  // no samples are needed
-        const Trial trial = try_shear(state, parameters.task(model, until, 0, 1), pulse);
+        const Trial trial = try_shear(state, parameters.task(of_all, until, 0, 1), pulse);
         Tried tried{.stress = stress,
                     .outcome = trial.result.outcome,
                     .strain = state.strain,
@@ -215,8 +218,8 @@ struct Jamming {
             found.is_packed = false;
             return found;
         }
-        const Model& model = suspension.model;
-        found.tried.push_back(attempt(sheared, model, lowest_stress, strain_before, pulse));
+        const Model of_all = model.applied_to(suspension.model);
+        found.tried.push_back(attempt(sheared, of_all, lowest_stress, strain_before, pulse));
         State jammed;
         double jammed_stress = 0;
         const auto jams = [&](double stress) {
@@ -225,7 +228,7 @@ struct Jamming {
                            ? (jammed = sheared, jammed_stress = stress, true)
                            : false;
             State state = sheared;
-            found.tried.push_back(attempt(state, model, stress, strain, pulse));
+            found.tried.push_back(attempt(state, of_all, stress, strain, pulse));
             if (found.tried.back().outcome == Outcome::flowing) return false;
             jammed = std::move(state);
             jammed_stress = stress;
@@ -235,8 +238,8 @@ struct Jamming {
         found.has_jammed = jammed_stress > 0;
         if (!found.has_jammed) return found;
         State released = jammed, reversed = mirrored(jammed);
-        found.unjamming = attempt(released, model, lowest_stress, strain_before, pulse);
-        found.reversal = attempt(reversed, model, jammed_stress, strain, pulse);
+        found.unjamming = attempt(released, of_all, lowest_stress, strain_before, pulse);
+        found.reversal = attempt(reversed, of_all, jammed_stress, strain, pulse);
         return found;
     }
 
