@@ -32,6 +32,17 @@ std::string format(const char* pattern, double value)
 
 }
 
+bool is_mean(const Json& entry)
+{
+    return entry.is_object() && entry.contains("mean");
+}
+
+std::string mean_text(const Json& entry, const std::string& between)
+{
+    return with_error(number_or_nan(entry, "mean"), number_or_nan(entry, "standard_error"),
+                      between);
+}
+
 std::string with_error(double value, double error, const std::string& between)
 {
     if (!std::isfinite(value)) return "undefined";
@@ -54,8 +65,7 @@ std::string one_line(const Json& step)
     if (step.contains("strain"))
         result += ", strain " + format("%.4g", number_or_nan(step, "strain"));
     if (step.contains("shear_rate") && step["shear_rate"].is_object())
-        result += ", shear rate " + with_error(number_or_nan(step["shear_rate"], "mean"),
-                                               number_or_nan(step["shear_rate"], "standard_error"));
+        result += ", shear rate " + mean_text(step["shear_rate"]);
     if (step.contains("last_shear_rate"))
         result += ", shear rate " + format("%.4g", number_or_nan(step, "last_shear_rate"));
     if (step.contains("volume_fraction") && !step.contains("outcome"))
@@ -67,21 +77,15 @@ std::string table(const Json& summary)
 {
     std::string text;
     for (const auto& [name, step] : summary["steps"].items()) {
-        const bool has_means = std::any_of(step.begin(), step.end(), [](const Json& entry) {
-            return entry.is_object() && entry.contains("mean");
-        });
-        if (!has_means) continue;
+        if (std::none_of(step.begin(), step.end(), is_mean)) continue;
         text += name + ": " + one_line(step);
         if (step.contains("averages_from_strain"))
             text += ", averages from strain " +
                     format("%.4g", number_or_nan(step, "averages_from_strain"));
         text += "\n";
         for (const auto& [quantity, entry] : step.items()) {
-            if (!entry.is_object() || !entry.contains("mean")) continue;
-            text += "  " + padded(quantity, 30) +
-                    padded(with_error(number_or_nan(entry, "mean"),
-                                      number_or_nan(entry, "standard_error")),
-                           24) +
+            if (!is_mean(entry)) continue;
+            text += "  " + padded(quantity, 30) + padded(mean_text(entry), 24) +
                     entry["unit"].get<std::string>() + "\n";
         }
         if (step.contains("rms_deviation"))

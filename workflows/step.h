@@ -42,6 +42,9 @@ struct Needs {
     double samples = 0, frames = 0;               // that it writes
     double frames_read = 0;                       // that it holds in memory
     double drawn_pixels = 0, plotted_pixels = 0;  // of its picture: particles or curves
+
+    /// It writes <its name>.png, unless there is nothing to draw.
+    bool draws() const { return drawn_pixels + plotted_pixels > 0; }
 };
 
 /// What is known while the steps are validated in their order.
@@ -53,14 +56,16 @@ struct Plan {
     // set by the step that is validated:
     bool changes_state = false;
     Needs needs;
+    std::vector<std::string> uses;  // steps whose results it needs; none: the state
 
     std::vector<PlannedRun> runs;
+    std::vector<std::string> pictures;  // steps that draw
 
     /// Error(input) if no step before has made a packing.
     void need_state(const io::JsonNode& step) const;
     /// The run that the field `of` names, or the last one if it is empty, with frames if asked for;
-    /// `of` is filled in. Errors: input (no such run).
-    const PlannedRun& need_run(const io::JsonNode& step, std::string& of, bool with_frames) const;
+    /// `of` is filled in, and the step uses that run. Errors: input (no such run).
+    const PlannedRun& need_run(const io::JsonNode& step, std::string& of, bool with_frames);
 };
 
 /// A finished shearing step.
@@ -76,6 +81,11 @@ struct Run {
     std::string continues;  // the run whose last state it started from; empty: a packing
 };
 
+/// A picture that could not be drawn.
+struct Problem {
+    std::string step, text;
+};
+
 /// What the steps work on and hand on.
 struct Context {
     const Suspension& suspension;
@@ -89,9 +99,9 @@ struct Context {
     std::vector<Run> runs;
     std::string last_run;  // that led to the state; empty: a packing did
 
-    std::string step_name;              // of the step that is running
-    nlohmann::ordered_json results;     // of the step that is running, for summary.json
-    std::vector<std::string> problems;  // pictures that could not be drawn
+    std::string step_name;           // of the step that is running
+    nlohmann::ordered_json results;  // of the step that is running, for summary.json
+    std::vector<Problem> problems;
 
     const Run& run(const std::string& name) const;
 };
@@ -100,7 +110,8 @@ struct Step {
     std::string kind, name;
     bool changes_state = false;
     Needs needs;
-    std::string pointer;  // "/steps/2"
+    std::vector<std::string> uses;  // names of the steps that it depends on; none: the state
+    std::string pointer;            // "/steps/2"
     std::function<void(io::Fields&)> describe;
     std::function<void(const io::JsonNode&, Plan&)> validate;
     std::function<void(Context&)> run;
@@ -120,6 +131,7 @@ StepKind step_kind(std::string_view name, std::string_view summary)
                 return Step{.kind = std::string(name),
                             .name = std::string(name),
                             .needs = {},
+                            .uses = {},
                             .pointer = "",
                             .describe = [step](io::Fields& f) { step->describe(f); },
                             .validate = [step](const io::JsonNode& node,

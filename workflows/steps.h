@@ -16,5 +16,6 @@ StepKind stability_step();
 StepKind velocity_profile_step();
 StepKind snapshot_step();
 StepKind plot_step();
+StepKind panels_step();
 
 }

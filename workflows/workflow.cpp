@@ -12,7 +12,7 @@ void Plan::need_state(const io::JsonNode& step) const
     if (!has_state) throw step.error("needs particles: put a step \"pack\" before it");
 }
 
-const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool with_frames) const
+const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool with_frames)
 {
     const auto usable = [&](const PlannedRun& run) { return run.frames > 0 || !with_frames; };
     const std::string wanted = with_frames ? "\"shear\"" : "\"shear\" or \"equilibrate\"";
@@ -21,6 +21,7 @@ const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool
         if (last == runs.rend())
             throw step.error("needs a run: put a step " + wanted + " before it");
         of = last->name;
+        uses.push_back(of);
         return *last;
     }
     std::vector<std::string_view> names;
@@ -28,6 +29,7 @@ const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool
         if (usable(run)) names.push_back(run.name);
     if (names.empty()) throw step.error("needs a run: put a step " + wanted + " before it");
     const std::size_t index = step.member("of").word(names);
+    uses.push_back(of);
     return *std::find_if(runs.begin(), runs.end(),
                          [&](const PlannedRun& run) { return run.name == names[index]; });
 }
@@ -185,16 +187,21 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::string& d
               .volume_fraction = 0,
               .changes_state = false,
               .needs = {},
-              .runs = {}};
+              .uses = {},
+              .runs = {},
+              .pictures = {}};
     for (std::size_t i = 0; i < texts.size(); ++i) {
         Step& step = workflow.steps[i];
         read_step(step, texts[i]);
         plan.step_name = step.name;
         plan.changes_state = false;
         plan.needs = {};
+        plan.uses = {};
         step.validate(texts[i].node, plan);
         step.changes_state = plan.changes_state;
         step.needs = plan.needs;
+        step.uses = plan.uses;
+        if (step.needs.draws()) plan.pictures.push_back(step.name);
     }
     return workflow;
 }
