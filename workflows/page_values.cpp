@@ -123,10 +123,14 @@ std::string results_html(const Json& results)
     for (const auto& [key, value] : results.items()) {
         if (key == "step") continue;
         const std::string name = escaped(in_words(key));
-        if (is_mean(value))
+        if (value.is_object() && !is_mean(value)) {
+            for (const auto& [inner, entry] : value.items())
+                others.push_back({name + ": " + escaped(in_words(inner)), value_html(entry)});
+        } else if (is_mean(value)) {
             means.push_back({name, mean_html(value), escaped(unit_of(value))});
-        else
+        } else {
             others.push_back({name, value_html(value)});
+        }
     }
     std::string text;
     if (!means.empty()) text += html::table({"mean of", "± standard error", "unit"}, means);

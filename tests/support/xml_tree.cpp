@@ -33,13 +33,6 @@ std::vector<XmlElement> XmlTree::named(const std::string& name) const
     return result;
 }
 
-std::string XmlTree::text(std::size_t element) const
-{
-    std::string result = elements[element].text;
-    for (std::size_t child : elements[element].children) result += text(child);
-    return result;
-}
-
 XmlTree read_xml(const std::string& text)
 {
     XmlTree tree;

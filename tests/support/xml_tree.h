@@ -22,8 +22,6 @@ struct XmlTree {
     std::vector<XmlElement> elements;  // the first one is the root; empty: not well-formed
 
     std::vector<XmlElement> named(const std::string& name) const;
-    /// All of the text in an element and those inside it.
-    std::string text(std::size_t element) const;
 };
 
 XmlTree read_xml(const std::string& text);
