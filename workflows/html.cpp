@@ -27,6 +27,7 @@ th, td { text-align: left; vertical-align: top; padding: 0.15rem 0.9rem 0.15rem 
   border-bottom: 1px solid #e4e4e8; overflow-wrap: normal; }
 thead th { border-bottom: 1px solid #888; }
 .bar { background: #7f9fc4; height: 0.9rem; margin-top: 0.3rem; min-width: 1px; }
+data { white-space: nowrap; }
 figure { margin: 0.8rem 0; break-inside: avoid; }
 img { max-width: 100%; height: auto; display: block; }
 details { margin: 0.4rem 0; }

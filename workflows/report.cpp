@@ -49,11 +49,13 @@ std::string with_error(double value, double error, const std::string& between)
     // an imposed quantity scatters by rounding only
     if (!(error > 1e-12 * std::abs(value)) || !std::isfinite(error)) return format("%.4g", value);
     const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
-    if (decimals < 0 || decimals > 6 || std::abs(value) >= 1e6)
+    if (decimals > 6 || std::abs(value) >= 1e6 || error >= 1e6)
         return format("%.3g", value) + between + format("%.1e", error);
+    const double unit = std::pow(10, -decimals);
     const auto rounded = [&](double number) {
         char text[64];
-        std::snprintf(text, sizeof text, "%.*f", decimals, number);
+        std::snprintf(text, sizeof text, "%.*f", std::max(0, decimals),
+                      decimals < 0 ? unit * std::round(number / unit) : number);
         return std::string(text);
     };
     return rounded(value) + between + rounded(error);
