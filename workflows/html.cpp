@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* replacement_mark = "\xEF\xBF\xBD";
 
-// Wide tables scroll inside their box; what is folded is printed where the browser can.
+// Wide tables scroll inside their box; what is folded is not printed, a sweep would fill a book.
 constexpr const char* style = R"(
 body { font: 1rem/1.5 system-ui, sans-serif; color: #1a1a1f; background: #fff; max-width: 62rem;
   margin: 0 auto; padding: 1rem; overflow-wrap: anywhere; }
@@ -37,7 +37,6 @@ ul { padding-left: 1.3rem; margin: 0.3rem 0; }
 @media print { body { max-width: none; padding: 0; font-size: 0.8rem; }
   .wide, pre { overflow: visible; } pre { white-space: pre-wrap; } h2, h3 { break-after: avoid; }
   figure img { max-height: 22cm; } }
-@media print { details::details-content { content-visibility: visible; height: auto; } }
 )";
 
 bool is_unreserved(char c)

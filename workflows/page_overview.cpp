@@ -101,8 +101,10 @@ std::string times_html(const PastRun& run, const std::vector<Chapter>& chapters)
     for (const Chapter& chapter : chapters) {
         const double own = seconds_of(run, chapter), share = all > 0 ? 100 * own / all : 0;
         const std::string percent = short_number(std::round(10 * share) / 10) + "%";
-        rows.push_back({chapter_name(run, chapter), seconds_text(own), percent,
-                        element("div", "", "class=\"bar\" style=\"width: " + short_number(0.1 * share) + "rem\"")});
+        rows.push_back(
+            {chapter_name(run, chapter), seconds_text(own), percent,
+             element("div", "",
+                     "class=\"bar\" style=\"width: " + short_number(0.1 * share) + "rem\"")});
     }
     return element("h2", "Where the time went") + "\n" +
            element("p", seconds_text(all) + " in the finished steps; threads: " +
