@@ -25,6 +25,8 @@ std::string Field::allowed() const
             return "3 numbers " + range.text();
         case FieldKind::numbers:
             return "numbers " + range.text();
+        case FieldKind::texts:
+            return "list of texts";
         case FieldKind::integer:
             return "integer " + range.text();
         case FieldKind::number:
@@ -156,6 +158,18 @@ Field& Fields::operator()(std::string name, std::vector<double>& value, Length l
     Field field{std::move(name), unit, std::move(help), FieldKind::numbers, range};
     field.read = [&value, length, range, unit](const JsonNode& node) {
         value = node.numbers(length, range, unit);
+    };
+    field.write = [&value] { return value.empty() ? ordered_json(nullptr) : ordered_json(value); };
+    return add(std::move(field));
+}
+
+Field& Fields::operator()(std::string name, std::vector<std::string>& value, Length length,
+                          std::size_t longest, std::string help)
+{
+    Field field{.name = std::move(name), .help = std::move(help), .kind = FieldKind::texts};
+    field.read = [&value, length, longest](const JsonNode& node) {
+        value.clear();
+        for (const JsonNode& text : node.elements(length)) value.push_back(text.text(longest));
     };
     field.write = [&value] { return value.empty() ? ordered_json(nullptr) : ordered_json(value); };
     return add(std::move(field));

@@ -26,7 +26,7 @@
 
 namespace sigmaflow::io {
 
-enum class FieldKind { number, integer, boolean, text, word, vector, numbers, group };
+enum class FieldKind { number, integer, boolean, text, word, vector, numbers, texts, group };
 
 /// One parameter. It refers to the struct that was described, which must live as long.
 struct Field {
@@ -81,6 +81,9 @@ public:
                       std::string help);
     Field& operator()(std::string name, std::vector<double>& value, Length length, Range range,
                       std::string unit, std::string help);
+    /// Texts of at most `longest` bytes.
+    Field& operator()(std::string name, std::vector<std::string>& value, Length length,
+                      std::size_t longest, std::string help);
 
     template <class Enum>
     Field& operator()(std::string name, Enum& value, Words<Enum> words, std::string help);

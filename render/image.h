@@ -34,6 +34,11 @@ void paste(Image& whole, const Image& part, int column, int row);
 /// Every pixel is the mean of factor x factor pixels. Width and height are multiples of factor.
 Image shrink(const Image& image, int factor);
 
+/// The picture in another size > 0, filtered with Lanczos' window of three lobes (C. E. Duchon,
+/// J. Appl. Meteorol. 18, 1016, 1979), which is stretched when the picture shrinks: flat areas stay
+/// what they are, and details finer than the new pixels become their mean.
+Image resized(const Image& image, int width, int height);
+
 /// Pictures in one row, centred vertically, `gap` white pixels between them.
 Image side_by_side(const std::vector<Image>& images, int gap = 0);
 

@@ -5,6 +5,7 @@
 #include "workflows/help.h"
 #include "workflows/interruption.h"
 #include "workflows/manifest.h"
+#include "workflows/report_page.h"
 #include "workflows/runner.h"
 #include "workflows/validate.h"
 
@@ -21,6 +22,7 @@ constexpr const char* examples = R"(examples:
   sigmaflow run my_flow.json --out results/phi_0.56   results in a folder of your choice
   sigmaflow steps                                     all steps, the suspension and the model
   sigmaflow steps shear                               the parameters of one step
+  sigmaflow report out/quickstart                     one HTML page of a run: report.html
   sigmaflow evaluate case.json                        velocities and stress of one configuration
   sigmaflow validate my_flow.json out/a/shear/run.h5  what files are, or what is wrong with them
 
@@ -29,6 +31,15 @@ a run that was interrupted or killed goes on with the same command
 exit codes: 0 complete, 3 interrupted (the same command goes on), 64 wrong command line, 65 invalid
 input, 66 input missing, 69 pictures could not be drawn, 70 numerical failure, 71 internal error,
 73 cannot write, 74 disk full, 75 folder in use)";
+
+constexpr const char* report_examples = R"(examples:
+  sigmaflow report out/quickstart                     writes out/quickstart/report.html
+  sigmaflow report out/quickstart --out run.html      writes a page to send; its pictures are inside
+
+the run may be complete, interrupted, failed or going on
+
+exit codes: 0 written, 64 wrong command line, 65 not a run or damaged, 66 no such folder, 73 cannot
+write, 74 disk full)";
 
 /// Prints results; a full disk or a closed pipe must not pass for success.
 void print(const std::string& text)
@@ -68,7 +79,7 @@ void run_command(int argc, char** argv)
     app.require_subcommand(0, 1);
 
     workflows::RunOptions options;
-    std::string out, case_file, step, wall_time;
+    std::string out, folder, case_file, step, wall_time;
     std::vector<std::string> files;
     CLI::App* run = app.add_subcommand("run", "run a workflow");
     run->add_option("WORKFLOW.json", options.workflow, "the workflow")->required();
@@ -96,6 +107,10 @@ void run_command(int argc, char** argv)
     CLI::App* validate = app.add_subcommand(
         "validate", "check workflows, cases, runs (.h5) and VTK files, compute nothing");
     validate->add_option("FILE", files, "the files")->required();
+    CLI::App* report = app.add_subcommand("report", "one HTML page of what a run has found");
+    report->add_option("DIR", folder, "the folder of the run")->required();
+    report->add_option("--out", out, "the page, default DIR/report.html");
+    report->footer(report_examples);
     CLI::App* steps = app.add_subcommand("steps", "explain steps and parameters");
     steps->add_option("STEP", step, "a step; default: all");
     try {
@@ -122,6 +137,10 @@ void run_command(int argc, char** argv)
         print(io::evaluate_case(case_file));
     } else if (validate->parsed()) {
         validate_files(files);
+    } else if (report->parsed()) {
+        if (report->count("--out") && out.empty())
+            throw Error(ErrorKind::usage, "--out", "must name a file, got \"\"");
+        print(workflows::write_report_page(folder, out).string() + "\n");
     } else if (steps->parsed()) {
         print(workflows::steps_help(step));
     } else {

@@ -2,11 +2,22 @@
 
 #include "io/atomic_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <utility>
 
 namespace sigmaflow::workflows {
+
+namespace {
+
+void note(Context& context, const std::string& problem)
+{
+    context.problems.push_back({context.step_name, context.step_name + ": " + problem});
+    context.progress.note(context.problems.back().text);
+}
+
+}
 
 void draw_or_note(Context& context, const std::function<void()>& draw)
 {
@@ -14,9 +25,17 @@ void draw_or_note(Context& context, const std::function<void()>& draw)
         draw();
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::rendering) throw;
-        context.problems.push_back(context.step_name + ": " + error.what());
-        context.progress.note(context.problems.back());
+        note(context, error.what());
     }
+}
+
+void note_undrawn(Context& context, const std::vector<std::string>& steps)
+{
+    std::string undrawn;
+    for (const Problem& problem : context.problems)
+        if (std::find(steps.begin(), steps.end(), problem.step) != steps.end())
+            undrawn += (undrawn.empty() ? "" : ", ") + problem.step;
+    if (!undrawn.empty()) note(context, "lacks what could not be drawn: " + undrawn);
 }
 
 void write_plot(Context& context, const std::string& name, const render::Plot& plot)

@@ -14,6 +14,10 @@ namespace sigmaflow::workflows {
 /// Runs `draw` and notes a rendering failure.
 void draw_or_note(Context& context, const std::function<void()>& draw);
 
+/// Notes for a picture made of those of other steps, which of them could not be drawn: the step
+/// runs again with them.
+void note_undrawn(Context& context, const std::vector<std::string>& steps);
+
 /// <name>.svg, which needs no graphics, and <name>.png.
 void write_plot(Context& context, const std::string& name, const render::Plot& plot);
 

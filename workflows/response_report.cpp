@@ -233,6 +233,13 @@ std::string_view response_outcome(const Response& response)
     return response.jammed ? "jammed" : "flowing";
 }
 
+std::vector<std::string> response_pictures()
+{
+    std::vector<std::string> endings;
+    for (const char* name : drawn) endings.push_back(std::string("_") + name);
+    return endings;
+}
+
 void report_response(Context& context, const StressStep& step,
                      const std::vector<Response>& responses, const PictureSize& size)
 {

@@ -3,6 +3,7 @@
 #pragma once
 #include "workflows/pictures.h"
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,9 @@ void archive(Archive& a, Response& r)
 
 /// flowing, jammed or not packed
 std::string_view response_outcome(const Response& response);
+
+/// "_shear_rate" and so on: the endings of its pictures.
+std::vector<std::string> response_pictures();
 
 struct StressStep {
     double stress_before = 0, stress_after = 0;  // [sigma0]

@@ -74,14 +74,6 @@ int lock_folder(const fs::path& path)
     return descriptor;
 }
 
-/// Names in records are only trusted to lead to files inside the folder.
-bool is_inside(const fs::path& relative)
-{
-    return !relative.empty() && relative.is_relative() &&
-           std::none_of(relative.begin(), relative.end(),
-                        [](const fs::path& part) { return part == ".." || part.empty(); });
-}
-
 void require_same_workflow(const fs::path& folder, const std::string& workflow_name)
 {
     const std::string mend = "; choose another folder with --out";
@@ -120,6 +112,13 @@ bool is_frame_file(const std::string& name)
     return false;
 }
 
+}
+
+bool is_inside(const fs::path& relative)
+{
+    return !relative.empty() && relative.is_relative() &&
+           std::none_of(relative.begin(), relative.end(),
+                        [](const fs::path& part) { return part == ".." || part.empty(); });
 }
 
 RunFolder::RunFolder(fs::path path, const std::string& workflow_name) : path_(std::move(path))

@@ -31,6 +31,9 @@ void archive(Archive& a, ResultFile& file)
     a(file.name, file.size, file.digest);
 }
 
+/// Does a name that was read from a file lead to a place inside the folder? Only then it is used.
+bool is_inside(const std::filesystem::path& relative);
+
 class RunFolder {
 public:
     RunFolder(std::filesystem::path path, const std::string& workflow_name);

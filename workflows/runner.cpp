@@ -106,7 +106,9 @@ void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json
         summary["steps"][step.name] = std::move(entry);
         const std::string line = one_line(summary["steps"][step.name]);
         context.progress.end(done ? line + ", from an earlier run" : line);
-        if (!done) {
+        // what an earlier run says of the steps to come is out of date
+        const bool next_runs = k + 1 < count && !plan.steps[k + 1].record;
+        if (!done || next_runs) {
             io::write_file(context.folder.path() / summary_name, summary.dump(2) + "\n");
             manifest.write(context.folder, "running");
         }
@@ -150,7 +152,7 @@ void run_workflow(const RunOptions& options, std::ostream& results)
     Json summary = {{"workflow", workflow.name}, {"steps", Json::object()}};
     try {
         run_steps(workflow, std::move(plan), context, summary, manifest);
-        const std::string& first = context.problems.empty() ? "" : context.problems.front();
+        const std::string& first = context.problems.empty() ? "" : context.problems.front().text;
         manifest.write(folder, context.problems.empty() ? "complete" : "pictures missing", first);
     } catch (const std::exception& error) {
         progress.clear();
@@ -167,7 +169,7 @@ void run_workflow(const RunOptions& options, std::ostream& results)
         throw Error(ErrorKind::rendering, "",
                     std::to_string(context.problems.size()) +
                         " pictures could not be drawn, all other results are complete: " +
-                        context.problems.front());
+                        context.problems.front().text);
 }
 
 }

@@ -44,6 +44,13 @@ struct Needs {
     double samples = 0, frames = 0;               // that it writes
     double frames_read = 0;                       // that it holds in memory
     double drawn_pixels = 0, plotted_pixels = 0;  // of its picture: particles or curves
+
+    bool draws() const { return drawn_pixels + plotted_pixels > 0; }
+};
+
+/// <name>.png of a step, unless it finds nothing to draw.
+struct PlannedPicture {
+    std::string name, step;
 };
 
 /// What is known while the steps are validated in their order.
@@ -61,15 +68,19 @@ struct Plan {
     std::vector<std::filesystem::path>
         inputs;  // files that it reads, beside those of earlier steps
     Needs needs;
+    std::vector<std::string> uses;  // steps whose results it needs; none: the state
+    // its pictures are <name><ending>.png; one without ending if it draws and there is none here
+    std::vector<std::string> endings;
 
     std::vector<PlannedRun> runs;
+    std::vector<PlannedPicture> pictures;
 
     /// Error(input) if no step before has made a packing.
     void need_state(const io::JsonNode& step) const;
     /// Error(input) if the workflow names no suspension.
     void need_suspension(const io::JsonNode& step) const;
     /// The run that the field `of` names, or the last one if it is empty, with frames if asked for;
-    /// `of` and what the step needs are filled in. Errors: input (no such run).
+    /// `of` and what the step needs and uses are filled in. Errors: input (no such run).
     const PlannedRun& need_run(const io::JsonNode& step, std::string& of, bool with_frames);
 };
 
@@ -86,6 +97,11 @@ struct Run {
     std::string continues;  // the run whose last state it started from; empty: a packing
 };
 
+/// A picture that could not be drawn.
+struct Problem {
+    std::string step, text;
+};
+
 /// What the steps work on and hand on.
 struct Context {
     const Suspension& suspension;
@@ -99,9 +115,9 @@ struct Context {
     std::vector<Run> runs;
     std::string last_run;  // that led to the state; empty: a packing did
 
-    std::string step_name;              // of the step that is running
-    nlohmann::ordered_json results;     // of the step that is running, for summary.json
-    std::vector<std::string> problems;  // pictures that could not be drawn
+    std::string step_name;           // of the step that is running
+    nlohmann::ordered_json results;  // of the step that is running, for summary.json
+    std::vector<Problem> problems;
 
     const Run& run(const std::string& name) const;
 };
@@ -111,7 +127,8 @@ struct Step {
     bool changes_state = false;
     std::vector<std::filesystem::path> inputs;
     Needs needs;
-    std::string pointer;  // "/steps/2"
+    std::vector<std::string> uses;  // names of the steps that it depends on; none: the state
+    std::string pointer;            // "/steps/2"
     std::function<void(io::Fields&)> describe;
     std::function<void(const io::JsonNode&, Plan&)> validate;
     std::function<void(Context&)> run;
@@ -132,6 +149,7 @@ StepKind step_kind(std::string_view name, std::string_view summary)
                             .name = std::string(name),
                             .inputs = {},
                             .needs = {},
+                            .uses = {},
                             .pointer = "",
                             .describe = [step](io::Fields& f) { step->describe(f); },
                             .validate = [step](const io::JsonNode& node,

@@ -13,6 +13,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr io::Seal seal{"step record", 2};
 
+const std::string& key_of(const std::vector<StepIdentity>& steps, const std::string& name)
+{
+    for (const StepIdentity& step : steps)
+        if (step.name == name) return step.key;
+    throw Error(ErrorKind::internal, name, "is used by a step before it");
+}
+
 }
 
 std::vector<StepIdentity> identities(const Workflow& workflow)
@@ -30,10 +37,8 @@ std::vector<StepIdentity> identities(const Workflow& workflow)
                               .parameters = parameters.dump(),
                               .suspension = resolved["suspension"].dump(),
                               .key = {}};
-        std::string before = step.inputs.empty() ? chain : "";
-        if (const auto of = parameters.find("of"); of != parameters.end())
-            for (const StepIdentity& earlier : result)
-                if (earlier.name == of->get<std::string>()) before = earlier.key;
+        std::string before = step.uses.empty() && step.inputs.empty() ? chain : "";
+        for (const std::string& used : step.uses) before += key_of(result, used);
         ArchiveWriter a;
         a(identity, before);
         identity.key = io::hexadecimal(io::checksum(a.bytes()));

@@ -21,7 +21,8 @@ std::span<const StepKind> step_kinds()
                                   jamming_step(),
                                   velocity_profile_step(),
                                   snapshot_step(),
-                                  plot_step()};
+                                  plot_step(),
+                                  panels_step()};
     return kinds;
 }
 

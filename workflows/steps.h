@@ -23,5 +23,6 @@ StepKind step_stress_step();
 StepKind velocity_profile_step();
 StepKind snapshot_step();
 StepKind plot_step();
+StepKind panels_step();
 
 }

@@ -22,6 +22,7 @@ const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool
 {
     const auto found = [&](const PlannedRun& run) -> const PlannedRun& {
         needs.particles = run.particles;
+        uses.push_back(run.name);
         if (with_frames) needs.frames_read = run.frames;
         return run;
     };
@@ -212,7 +213,10 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::filesyste
               .changes_state = false,
               .inputs = {},
               .needs = {},
-              .runs = {}};
+              .uses = {},
+              .endings = {},
+              .runs = {},
+              .pictures = {}};
     for (std::size_t i = 0; i < texts.size(); ++i) {
         Step& step = workflow.steps[i];
         read_step(step, texts[i]);
@@ -220,11 +224,17 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::filesyste
         plan.changes_state = false;
         plan.inputs.clear();
         plan.needs = {};
+        plan.uses = {};
+        plan.endings = {};
         step.validate(texts[i].node, plan);
         step.changes_state = plan.changes_state;
         step.inputs = plan.inputs;
         if (plan.needs.particles == 0) plan.needs.particles = plan.particles;
         step.needs = plan.needs;
+        step.uses = plan.uses;
+        if (step.needs.draws() && plan.endings.empty()) plan.endings = {""};
+        for (const std::string& ending : plan.endings)
+            plan.pictures.push_back({step.name + ending, step.name});
     }
     return workflow;
 }

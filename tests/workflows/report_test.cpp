@@ -14,7 +14,9 @@ TEST(Report, ShowsTheErrorWithTwoDigitsAndTheValueWithAsManyDecimals)
     EXPECT_EQ(with_error(161.27, 5.2), "161.3 +- 5.2");
     EXPECT_EQ(with_error(-3.14159, 0.25), "-3.14 +- 0.25");
     EXPECT_EQ(with_error(161.27, 12), "161 +- 12");
-    EXPECT_EQ(with_error(1612.7, 123), "1.61e+03 +- 1.2e+02");
+    EXPECT_EQ(with_error(1612.7, 123), "1610 +- 120");
+    EXPECT_EQ(with_error(422.3, 131), "420 +- 130");
+    EXPECT_EQ(with_error(3, 4e7), "3 +- 4.0e+07");
 }
 
 TEST(Report, ShowsAValueWithoutErrorAlone)

@@ -87,6 +87,62 @@ TEST_F(ResumedRun, MakesMissingAndChangedResultsAgain)
     EXPECT_EQ(results(), first);
 }
 
+TEST_F(ResumedRun, SummaryForgetsWhatIsOutOfDateBeforeTheStepRunsAgain)
+{
+    ASSERT_EQ(run_flow({}).exit_code, 0);
+    EXPECT_NE(text_of(folder / "out/w/summary.json").find("\"shear\""), std::string::npos);
+    ASSERT_EQ(run_flow({.strain = "1000"}, "--max-walltime 2s").exit_code, 3);
+    const std::string summary = text_of(folder / "out/w/summary.json");
+    EXPECT_NE(summary.find("\"pack\""), std::string::npos);
+    EXPECT_EQ(summary.find("\"shear\""), std::string::npos) << summary;
+}
+
+TEST_F(ResumedRun, PanelsFollowEveryPictureTheyShow)
+{
+    const auto run_figure = [&](const std::string& first, const std::string& second,
+                                const std::string& environment = "") {
+        const auto plot = [](const std::string& name, const std::string& width) {
+            return R"({"step": "plot", "height": 200, "name": ")" + name + R"(", "width": )" +
+                   width + "},\n";
+        };
+        write("w.json", R"({"suspension": {"particles": 30, "volume_fraction": 0.45},
+            "steps": [{"step": "pack"}, {"step": "shear", "stress": 2, "strain": 0.1},)" +
+                            plot("rate", first) + plot("again", second) + plot("other", "300") +
+                            R"({"step": "panels", "of": ["rate", "again"], "width": 400}]})");
+        return run("run w.json", environment);
+    };
+    ASSERT_EQ(run_figure("300", "300").exit_code, 0);
+    const auto figure = [&] { return text_of(folder / "out/w/panels.png"); };
+    const std::string same_sizes = figure();
+    ASSERT_FALSE(same_sizes.empty());
+    expect_in(run_figure("300", "300"), "panels: done, from an earlier run");
+
+    const Said second = run_figure("300", "400");
+    expect_in(second, "again: again, width was 300, is 400");
+    expect_in(second, "panels: again, a step before it was changed");
+    expect_in(second, "rate: done, from an earlier run");
+    EXPECT_NE(figure(), same_sizes);
+    expect_in(run_figure("400", "400"), "panels: again, a step before it was changed");
+    ASSERT_EQ(run_figure("300", "300").exit_code, 0);
+    EXPECT_EQ(figure(), same_sizes);
+}
+
+TEST_F(ResumedRun, PanelsAreMadeAgainWhenAPictureThatFailedCanBeDrawn)
+{
+    write("w.json", R"({"suspension": {"particles": 30, "volume_fraction": 0.45},
+        "steps": [{"step": "pack"}, {"step": "shear", "stress": 2, "strain": 0.1},
+                  {"step": "plot", "width": 320, "height": 240},
+                  {"step": "snapshot", "width": 320, "height": 240},
+                  {"step": "panels", "of": ["plot", "snapshot"], "width": 400}]})");
+    const Said blind = run("run w.json", "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null DISPLAY=");
+    EXPECT_EQ(blind.exit_code, 69);
+    expect_in(blind, "panels: lacks what could not be drawn: snapshot");
+    const std::string lacking = text_of(folder / "out/w/panels.png");
+    ASSERT_EQ(run("run w.json").exit_code, 0);
+    EXPECT_NE(text_of(folder / "out/w/panels.png"), lacking);
+    EXPECT_EQ(text_of(folder / "out/w/summary.json").find("\"without\""), std::string::npos);
+}
+
 TEST_F(ResumedRun, AnotherSuspensionInTheSameFolderIsRefusedByName)
 {
     ASSERT_EQ(run_flow({}).exit_code, 0);

@@ -317,11 +317,20 @@ TEST_F(SmallRun, JammedSuspensionIsAResult)
 {
     write("jam.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.61},
         "steps": [{"step": "pack"}, {"step": "shear", "stress": 20, "strain": 2},
-                  {"step": "velocity_profile"}]})");
+                  {"step": "velocity_profile"}, {"step": "plot", "width": 640, "height": 360},
+                  {"step": "panels", "of": ["velocity_profile", "plot"], "width": 640},
+                  {"step": "panels", "of": ["velocity_profile"]}]})");
     const Said said = run("run jam.json -q");
     ASSERT_EQ(said.exit_code, 0) << said.err;
     const Json shear = json("out/jam/summary.json")["steps"]["shear"];
     EXPECT_EQ(shear["outcome"], "jammed");
+    // the profile has no picture, so there is none of both
+    const Json figure = json("out/jam/summary.json")["steps"]["panels"];
+    EXPECT_EQ(figure["without"], Json::array({"velocity_profile"}));
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/jam/panels.png"));
+    const Json none = json("out/jam/summary.json")["steps"]["panels_2"];
+    EXPECT_EQ(none["outcome"], "no picture, none of these steps has drawn one");
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/jam/panels_2.png"));
     EXPECT_LT(shear["strain"].get<double>(), 0.5);
     EXPECT_LT(shear["jamming_window"]["strain_gain"].get<double>(), 1e-3);
     EXPECT_LT(shear["jamming_window"]["force_residual"].get<double>(), 0.01);

@@ -464,6 +464,42 @@ std::vector<Mistake> mistakes_of_sweeps()
          after_shear("@{\"step\": \"flow_curve\"}"),
          "/steps/2",
          {"needs runs at two stresses"}},
+        {"panels_before_any_picture",
+         after_shear("@{\"step\": \"panels\", \"of\": [\"shear\"]}"),
+         "/steps/2",
+         {"needs pictures"}},
+        {"panels_of_a_step_that_draws_nothing",
+         after_shear("{\"step\": \"plot\"}, {\"step\": \"snapshot\"},\n {\"step\": \"panels\", "
+                     "\"of\": [\"plot\", @\"shear\"]}"),
+         "/steps/4/of/1",
+         {"must be one of plot, snapshot, got \"shear\""}},
+        {"panels_of_a_later_step",
+         after_shear("{\"step\": \"plot\"}, {\"step\": \"panels\", \"of\": [@\"snapshot\"]},\n"
+                     "{\"step\": \"snapshot\"}"),
+         "/steps/3/of/0",
+         {"must be one of plot, got \"snapshot\""}},
+        {"panels_of_nothing",
+         after_shear("{\"step\": \"plot\"}, {\"step\": \"panels\", \"of\": @[]}"),
+         "/steps/3/of",
+         {"must have 1 to 26 elements"}},
+        {"panels_without_a_list",
+         after_shear("{\"step\": \"plot\"}, @{\"step\": \"panels\"}"),
+         "/steps/3",
+         {"misses the required key \"of\""}},
+        {"panels_of_a_number",
+         after_shear("{\"step\": \"plot\"}, {\"step\": \"panels\", \"of\": [@3]}"),
+         "/steps/3/of/0",
+         {"must be a text"}},
+        {"panels_in_more_columns_than_pictures",
+         after_shear("{\"step\": \"plot\"}, {\"step\": \"panels\", \"of\": [\"plot\"], "
+                     "\"columns\": @2}"),
+         "/steps/3/columns",
+         {"must be <= 1, the number of pictures, got 2"}},
+        {"panels_higher_than_programs_show",
+         after_shear("{\"step\": \"plot\"}, @{\"step\": \"panels\", \"of\": [\"plot\", \"plot\", "
+                     "\"plot\", \"plot\"], \"columns\": 1, \"width\": 16384}"),
+         "/steps/3",
+         {"must be <= 65535", "more columns"}},
     };
 }
 

@@ -110,6 +110,7 @@ struct AdaptiveFlowCurve {
         plan.needs.volume_fraction = own.volume_fraction;
         plan.needs.samples = goal.most_points * maximum_strain / series_interval;
         plan.needs.plotted_pixels = 2 * size.pixels();
+        plan.endings = {"", "_viscosity"};
     }
 
     Stretch shear_on(const Suspension& suspension, const Point& point, double until,

@@ -23,6 +23,7 @@ struct FlowCurve {
     {
         runs = runs_for_curves(node, plan);
         plan.needs.plotted_pixels = size.pixels();
+        plan.endings = {"", "_viscosity"};
     }
 
     void run(Context& context) const

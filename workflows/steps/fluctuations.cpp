@@ -55,6 +55,7 @@ struct FluctuationsStep {
         runs = runs_like_the_last(plan);
         if (runs.empty()) throw node.error("needs a run: put a step \"shear\" before it");
         plan.needs.plotted_pixels = size.pixels();
+        plan.endings = {"", "_variance"};
     }
 
     std::string csv_text(const std::vector<Fluctuating>& all) const

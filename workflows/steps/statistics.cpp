@@ -31,6 +31,7 @@ struct Statistics {
     {
         plan.need_run(node, of, false);
         plan.needs.plotted_pixels = 2 * size.pixels();
+        plan.endings = {"_correlation", "_blocks"};
     }
 
     static std::string csv_text(std::span<const Sample> samples, double interval)

@@ -77,6 +77,7 @@ struct StepStress {
         plan.needs.samples =
             starts * (strain_after / series_interval + strain_before / interval_before);
         plan.needs.plotted_pixels = size.pixels();
+        plan.endings = response_pictures();
     }
 
     ShearingTask task(const Model& of_all, double stress, double strain, double interval) const
