@@ -58,16 +58,29 @@ std::string details_text(const State& state, double shear_rate)
 
 }
 
-void ShearingParameters::describe(io::Fields& f)
+void describe_scheme(io::Fields& f, Scheme& scheme)
 {
-    f("stress", stress, io::between(1e-6, 1e9), "sigma0",
-      "imposed shear stress; either this or rate");
-    f("rate", rate, io::between(1e-6, 1e9), "rate0", "imposed shear rate; either this or stress");
     f("scheme", scheme,
       io::Words<Scheme>{
           {"implicit", Scheme::implicit}, {"heun", Scheme::heun}, {"euler", Scheme::euler}},
       "time stepping: implicit contact springs (long steps), predictor-corrector, or Euler; the "
       "dashpot variant needs one of the last two");
+}
+
+void check_scheme(Scheme scheme, const Model& model, const io::JsonNode& step)
+{
+    if (scheme == Scheme::implicit && model.contact_hydrodynamics == ContactHydrodynamics::dashpot)
+        throw step.error_at_key("scheme",
+                                "\"implicit\" (the default) needs contact_hydrodynamics "
+                                "\"lubrication\"; \"heun\" can do \"dashpot\"");
+}
+
+void ShearingParameters::describe(io::Fields& f)
+{
+    f("stress", stress, io::between(1e-6, 1e9), "sigma0",
+      "imposed shear stress; either this or rate");
+    f("rate", rate, io::between(1e-6, 1e9), "rate0", "imposed shear rate; either this or stress");
+    describe_scheme(f, scheme);
     f("displacement", displacement, io::above_to(0, 0.1), "a",
       "nothing moves by more than this in one step; default: 0.01, heun and euler 0.001");
     f("solver", solver,
@@ -91,11 +104,7 @@ Control ShearingParameters::check(const io::JsonNode& node, Plan& plan, double s
     plan.need_state(node);
     const Model changed = checked_model(model, node, plan);
     const Control control = io::checked_control(stress, rate, changed, node);
-    if (scheme == Scheme::implicit &&
-        changed.contact_hydrodynamics == ContactHydrodynamics::dashpot)
-        throw node.error_at_key("scheme",
-                                "\"implicit\" (the default) needs contact_hydrodynamics "
-                                "\"lubrication\"; \"heun\" can do \"dashpot\"");
+    check_scheme(scheme, changed, node);
     if (strain / series_interval > most_outputs)
         throw node.error_at_key("series_interval", "gives more than 1e7 rows, the strain is " +
                                                        io::number_text(strain));

@@ -30,6 +30,10 @@ struct ShearingTask {
     double frame_interval = 0;   // [-]; 0: only the last frame, if frames are made at all
 };
 
+void describe_scheme(io::Fields& f, Scheme& scheme);
+/// Error(input) if the scheme cannot do the contacts of the model.
+void check_scheme(Scheme scheme, const Model& model, const io::JsonNode& step);
+
 /// Parameters that every shearing step has.
 struct ShearingParameters {
     std::optional<double> stress, rate;

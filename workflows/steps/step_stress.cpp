@@ -26,7 +26,9 @@ struct StepStress {
     double stress_before = 2, stress_after = 3;
     double strain_before = 2, strain_after = 0.4;
     int starts = 100;
-    double series_interval = 5e-4, displacement = 5e-3;
+    double series_interval = 5e-4;
+    Scheme scheme = Scheme::implicit;
+    std::optional<double> displacement;
     StiffnessRule stiffness = StiffnessRule::rescaled;
     io::ModelChanges model;
     PictureSize size{1440, 720};
@@ -45,8 +47,9 @@ struct StepStress {
         f("strain_after", strain_after, io::above_to(0, 1e3), "-", "strain after it");
         f("series_interval", series_interval, io::between(1e-6, 1), "strain",
           "strain between two samples after the step");
+        describe_scheme(f, scheme);
         f("displacement", displacement, io::above_to(0, 0.1), "a",
-          "nothing moves by more than this in one step");
+          "nothing moves by more than this in one step; default: 0.005, heun and euler 0.001");
         f("stiffness", stiffness,
           io::Words<StiffnessRule>{{"rescaled", StiffnessRule::rescaled},
                                    {"kept", StiffnessRule::kept}},
@@ -70,8 +73,7 @@ struct StepStress {
         if (changed.stiffness_scale == StiffnessScale::fixed && node.has("stiffness"))
             throw node.error_at_key("stiffness",
                                     "the model's stiffness_scale \"fixed\" leaves no choice");
-        if (changed.contact_hydrodynamics == ContactHydrodynamics::dashpot)
-            throw node.error("needs contact_hydrodynamics \"lubrication\"");
+        check_scheme(scheme, changed, node);
         plan.needs.particles = own.particles;
         plan.needs.volume_fraction = own.volume_fraction;
         plan.needs.samples =
@@ -84,7 +86,8 @@ struct StepStress {
     {
         ShearingParameters parameters;
         parameters.stress = stress;
-        parameters.displacement = displacement;
+        parameters.scheme = scheme;
+        parameters.displacement = displacement.value_or(scheme == Scheme::implicit ? 5e-3 : 1e-3);
         parameters.series_interval = interval;
         return parameters.task(of_all, strain, 0, 1);
     }
