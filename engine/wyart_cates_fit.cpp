@@ -146,8 +146,8 @@ bool minimise(const Problem& problem, double scatter, VectorXd& x)
     Residuals residuals(problem, scatter);
     Eigen::LevenbergMarquardt<Residuals> method(residuals);
     method.setMaxfev(200);
-    method.setFtol(1e-12);
-    method.setXtol(1e-12);
+    method.setFtol(1e-10);
+    method.setXtol(1e-8);
     const auto status = method.minimize(x);
     return status != Eigen::LevenbergMarquardtSpace::TooManyFunctionEvaluation &&
            status != Eigen::LevenbergMarquardtSpace::ImproperInputParameters;
