@@ -19,6 +19,7 @@ std::span<const StepKind> step_kinds()
                                   statistics_step(),
                                   compare_step(),
                                   jamming_step(),
+                                  wyart_cates_step(),
                                   velocity_profile_step(),
                                   snapshot_step(),
                                   plot_step(),

@@ -20,6 +20,7 @@ StepKind statistics_step();
 StepKind compare_step();
 StepKind jamming_step();
 StepKind step_stress_step();
+StepKind wyart_cates_step();
 StepKind velocity_profile_step();
 StepKind snapshot_step();
 StepKind plot_step();

@@ -273,12 +273,52 @@ TEST_F(SmallRun, StabilityFollowsFromTheFlowCurve)
         EXPECT_GT(std::filesystem::file_size(folder / "out/falls" / name), 300u) << name;
 }
 
+TEST_F(SmallRun, WyartCatesFitsTheViscositiesOfAllVolumeFractions)
+{
+    write("fitted.json", R"({"suspension": {"particles": 40},
+        "steps": [{"step": "pack", "volume_fraction": 0.45},
+                  {"step": "shear", "name": "thin", "sweep": {"stress": [0.3, 3, 20]}, "strain": 0.3},
+                  {"step": "pack", "name": "denser", "volume_fraction": 0.55},
+                  {"step": "shear", "name": "thick", "sweep": {"stress": [0.3, 3, 20]}, "strain": 0.3},
+                  {"step": "wyart_cates", "bootstrap_samples": 20, "width": 640, "height": 360}]})");
+    const Said said = run("run fitted.json -q");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const Json steps = json("out/fitted/summary.json")["steps"], fit = steps["wyart_cates"];
+    const auto value = [&](const char* name) { return fit[name]["mean"].get<double>(); };
+    // the model of the summary has the rms distance of the summary from the measured viscosities
+    double sum = 0;
+    int count = 0;
+    for (const char* name : {"thin_0.3", "thin_3", "thin_20", "thick_0.3", "thick_3", "thick_20"}) {
+        const Json& means = steps[name];
+        if (means["outcome"] != "flowing") continue;
+        const double phi = name[3] == 'n' ? 0.45 : 0.55;
+        const double f =
+            std::exp(-std::pow(value("onset_stress") / means["shear_stress"]["mean"].get<double>(),
+                               value("sharpness")));
+        const double jamming =
+            f * value("frictional_fraction") + (1 - f) * value("frictionless_fraction");
+        ASSERT_LT(phi, jamming) << name;
+        const double viscosity =
+            value("amplitude") * std::pow(1 - phi / jamming, -value("exponent"));
+        sum += std::pow(std::log(viscosity / means["viscosity"]["mean"].get<double>()), 2);
+        ++count;
+    }
+    EXPECT_NEAR(std::sqrt(sum / count), fit["rms"].get<double>(), 1e-9);
+    EXPECT_EQ(fit["verdict"][0].get<std::string>().find("lowest Akaike") == std::string::npos,
+              false);
+    EXPECT_EQ(fit["shapes"].size(), 2u);
+    for (const char* name : {"wyart_cates.csv", "wyart_cates.png", "wyart_cates_map.svg"})
+        EXPECT_GT(std::filesystem::file_size(folder / "out/fitted" / name), 300u) << name;
+}
+
 TEST_F(SmallRun, NoPictureIsDrawnOfWhatHasNoPoints)
 {
     write("all_jam.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.61},
         "steps": [{"step": "pack"},
                   {"step": "shear", "sweep": {"stress": [40, 80]}, "strain": 0.5},
-                  {"step": "flow_curve"}, {"step": "stability"}]})");
+                  {"step": "pack", "name": "denser", "volume_fraction": 0.605},
+                  {"step": "shear", "name": "denser_shear", "sweep": {"stress": [40, 80]}, "strain": 0.5},
+                  {"step": "flow_curve"}, {"step": "stability"}, {"step": "wyart_cates"}]})");
     const Said said = run("run all_jam.json -q");
     ASSERT_EQ(said.exit_code, 0) << said.err;
     const Json steps = json("out/all_jam/summary.json")["steps"];
@@ -286,7 +326,10 @@ TEST_F(SmallRun, NoPictureIsDrawnOfWhatHasNoPoints)
     EXPECT_EQ(steps["flow_curve"]["curves"][0]["shape"], "arch-shaped");
     EXPECT_EQ(steps["flow_curve"]["outcome"], "no picture, nothing flows");
     EXPECT_EQ(steps["stability"]["outcome"], "nothing to say, no two neighbouring stresses flow");
-    for (const char* name : {"flow_curve", "flow_curve_viscosity", "stability"})
+    EXPECT_EQ(steps["wyart_cates"]["outcome"],
+              "nothing fitted: 4 parameters need at least 5 flowing points, there are 0");
+    for (const char* name :
+         {"flow_curve", "flow_curve_viscosity", "stability", "wyart_cates", "wyart_cates_map"})
         EXPECT_FALSE(
             std::filesystem::exists(folder / "out/all_jam" / (name + std::string(".png"))));
     EXPECT_TRUE(std::filesystem::exists(folder / "out/all_jam/flow_curve.csv"));

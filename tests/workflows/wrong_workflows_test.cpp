@@ -500,6 +500,15 @@ std::vector<Mistake> mistakes_of_sweeps()
                      "\"plot\", \"plot\"], \"columns\": 1, \"width\": 16384}"),
          "/steps/3",
          {"must be <= 65535", "more columns"}},
+        {"wyart_cates_of_one_volume_fraction",
+         step("{\"step\": \"shear\", \"sweep\": {\"stress\": [1, 2]}, \"strain\": 2},\n"
+              "    @{\"step\": \"wyart_cates\"}"),
+         "/steps/2",
+         {"needs runs at imposed stresses at two volume fractions"}},
+        {"wyart_cates_without_runs",
+         step("@{\"step\": \"wyart_cates\"}"),
+         "/steps/1",
+         {"needs steps \"shear\" at imposed stresses before it"}},
     };
 }
 
