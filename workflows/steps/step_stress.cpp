@@ -24,7 +24,7 @@ enum class StiffnessRule { rescaled, kept };
 struct StepStress {
     Start start;
     double stress_before = 2, stress_after = 3;
-    double strain_before = 2, strain_after = 0.4;
+    double strain_before = 2, strain_after = 0.2;
     int starts = 100;
     double series_interval = 5e-4;
     Scheme scheme = Scheme::implicit;
@@ -33,7 +33,7 @@ struct StepStress {
     io::ModelChanges model;
     PictureSize size{1440, 720};
 
-    static constexpr double interval_before = 0.005;
+    static constexpr double interval_before = 0.01;
 
     void describe(io::Fields& f)
     {
@@ -49,7 +49,8 @@ struct StepStress {
           "strain between two samples after the step");
         describe_scheme(f, scheme);
         f("displacement", displacement, io::above_to(0, 0.1), "a",
-          "nothing moves by more than this in one step; default: 0.005, heun and euler 0.001");
+          "nothing moves by more than this in one step after the step in stress; default: 0.005, "
+          "heun and euler 0.001");
         f("stiffness", stiffness,
           io::Words<StiffnessRule>{{"rescaled", StiffnessRule::rescaled},
                                    {"kept", StiffnessRule::kept}},
@@ -82,12 +83,13 @@ struct StepStress {
         plan.endings = response_pictures();
     }
 
-    ShearingTask task(const Model& of_all, double stress, double strain, double interval) const
+    ShearingTask task(const Model& of_all, double stress, double strain, double interval,
+                      std::optional<double> longest) const
     {
         ShearingParameters parameters;
         parameters.stress = stress;
         parameters.scheme = scheme;
-        parameters.displacement = displacement.value_or(scheme == Scheme::implicit ? 5e-3 : 1e-3);
+        parameters.displacement = longest;
         parameters.series_interval = interval;
         return parameters.task(of_all, strain, 0, 1);
     }
@@ -121,13 +123,16 @@ struct StepStress {
             response.packed = false;
             return response;
         }
-        Trial before =
-            try_shear(state, task(of_step, stress_before, strain_before, interval_before), pulse);
+        Trial before = try_shear(
+            state, task(of_step, stress_before, strain_before, interval_before, {}), pulse);
         response.before = std::move(before.series);
         response.jammed = before.result.outcome != Outcome::flowing;
         if (response.jammed) return response;
-        Trial after = try_shear(
-            state, task(model_after(of_step), stress_after, strain_after, series_interval), pulse);
+        Trial after =
+            try_shear(state,
+                      task(model_after(of_step), stress_after, strain_after, series_interval,
+                           displacement.value_or(scheme == Scheme::implicit ? 5e-3 : 1e-3)),
+                      pulse);
         response.after = std::move(after.series);
         response.jammed = after.result.outcome != Outcome::flowing;
         return response;
