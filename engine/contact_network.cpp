@@ -42,8 +42,8 @@ void count_backbone(const Frame& frame, int least_contacts, ContactNetwork& resu
         constrained += constraints(c);
     }
     result.rattler_fraction = share(removed, n);
-    result.contact_number_without_rattlers = share(2 * contacts, n - removed);
-    result.constraint_number_without_rattlers = share(constrained, n - removed);
+    result.net_contact_number = share(2 * contacts, n - removed);
+    result.net_constraint_number = share(constrained, n - removed);
 }
 
 void count_clusters(const Frame& frame, ContactNetwork& result)
@@ -96,8 +96,8 @@ std::span<const NetworkField> network_fields()
          &ContactNetwork::frictional_contact_number},
         {"rattler_fraction", "-", "share of the particles that are rattlers",
          &ContactNetwork::rattler_fraction},
-        {"contact_number_without_rattlers", "-", "contacts among the others per particle",
-         &ContactNetwork::contact_number_without_rattlers},
+        {"net_contact_number", "-", "contact number without rattlers",
+         &ContactNetwork::net_contact_number},
         {"frictional_particle_fraction", "-", "share of the particles with frictional contacts",
          &ContactNetwork::frictional_particle_fraction},
         {"frictional_contact_fraction", "-", "frictional share of the contacts",
@@ -108,8 +108,8 @@ std::span<const NetworkField> network_fields()
          &ContactNetwork::sliding_fraction},
         {"constraint_number", "-", "constraints per particle: sticking 3, others 1",
          &ContactNetwork::constraint_number},
-        {"constraint_number_without_rattlers", "-", "constraints among the others per particle",
-         &ContactNetwork::constraint_number_without_rattlers},
+        {"net_constraint_number", "-", "constraints per particle without rattlers",
+         &ContactNetwork::net_constraint_number},
         {"cluster_number", "-", "clusters of two or more particles, per particle",
          &ContactNetwork::cluster_number},
         {"largest_cluster_fraction", "-", "share of the particles in the largest cluster",

@@ -46,13 +46,13 @@ struct NetworkParameters {
 struct ContactNetwork {
     double contact_number = 0, frictional_contact_number = 0;
     double rattler_fraction = 0;
-    double contact_number_without_rattlers = 0;  // of the particles that are none
-    double frictional_particle_fraction = 0;     // with at least one frictional contact
-    double frictional_contact_fraction = 0;      // of the contacts
-    double frictional_pair_fraction = 0;         // of the close pairs
-    double sliding_fraction = 0;                 // of the frictional contacts
-    double constraint_number = 0;                // per particle
-    double constraint_number_without_rattlers = 0;
+    double net_contact_number = 0;            // without rattlers
+    double frictional_particle_fraction = 0;  // with at least one frictional contact
+    double frictional_contact_fraction = 0;   // of the contacts
+    double frictional_pair_fraction = 0;      // of the close pairs
+    double sliding_fraction = 0;              // of the frictional contacts
+    double constraint_number = 0;             // per particle
+    double net_constraint_number = 0;
     double cluster_number = 0;  // clusters of at least two particles, per particle
     double largest_cluster_fraction = 0;
     double percolates_flow = 0, percolates_gradient = 0, percolates_vorticity = 0;  // 0 or 1

@@ -2,6 +2,7 @@
 
 #include "engine/error.h"
 #include "engine/pair_correlation.h"
+#include "engine/pair_distances.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,27 +16,52 @@ namespace {
 constexpr double inverse_e = 1 / std::numbers::e;
 constexpr double in_cone = 0.75;  // squared cosine of 30 degrees
 
-struct Knot {
-    double distance;
-    std::size_t bin;
+/// C of one direction in the bins that have pairs in every frame, from C(0) = 1 on; every mean is
+/// then that of the same frames.
+struct Curve {
+    std::vector<double> distance, mean;      // of each knot
+    std::vector<std::vector<double>> frame;  // [frame][knot]
 };
 
-/// Bins that have pairs in every frame, where the mean is that of one and the same set of frames.
-std::vector<Knot> common_bins(std::span<const FieldCorrelation> frames, double width, int direction)
+Curve curve(std::span<const FieldCorrelation> frames, double largest_distance, int direction)
 {
-    std::vector<Knot> result;
-    for (std::size_t k = 0; k < frames.front().value[direction].size(); ++k)
-        if (std::all_of(frames.begin(), frames.end(),
-                        [&](const FieldCorrelation& f) { return f.pairs[direction][k] > 0; }))
-            result.push_back({(static_cast<double>(k) + 0.5) * width, k});
+    Curve result{{0}, {1}, std::vector<std::vector<double>>(frames.size(), {1})};
+    if (frames.empty()) return result;
+    const std::size_t bins = frames.front().value[direction].size();
+    for (std::size_t k = 0; k < bins; ++k) {
+        if (std::any_of(frames.begin(), frames.end(),
+                        [&](const FieldCorrelation& f) { return !(f.pairs[direction][k] > 0); }))
+            continue;
+        result.distance.push_back((static_cast<double>(k) + 0.5) * largest_distance /
+                                  static_cast<double>(bins));
+        double sum = 0;
+        for (std::size_t f = 0; f < frames.size(); ++f) {
+            result.frame[f].push_back(frames[f].value[direction][k]);
+            sum += frames[f].value[direction][k];
+        }
+        result.mean.push_back(sum / static_cast<double>(frames.size()));
+    }
     return result;
 }
 
-double mean_value(std::span<const FieldCorrelation> frames, int direction, std::size_t bin)
+/// Where the mean first falls through a value: behind the knot `before`, at this share of the way
+/// to the next one.
+struct Crossing {
+    std::size_t before = 0;
+    double share = 0;
+};
+
+std::optional<Crossing> crossing(const Curve& c, double value)
 {
-    double sum = 0;
-    for (const FieldCorrelation& f : frames) sum += f.value[direction][bin];
-    return sum / static_cast<double>(frames.size());
+    for (std::size_t k = 1; k < c.mean.size(); ++k)
+        if (c.mean[k] < value)
+            return Crossing{k - 1, (c.mean[k - 1] - value) / (c.mean[k - 1] - c.mean[k])};
+    return std::nullopt;
+}
+
+double interpolated(const std::vector<double>& values, const Crossing& at)
+{
+    return values[at.before] + at.share * (values[at.before + 1] - values[at.before]);
 }
 
 }
@@ -95,24 +121,17 @@ FieldCorrelation field_correlation(const State& state, const std::vector<Vec3>& 
         result.value[direction].assign(bins, 0);
         result.pairs[direction].assign(bins, 0);
     }
-    const Images images(state.box);
-    const double reach = largest_distance * largest_distance;
-    for (int i = 0; i < state.size(); ++i)
-        for (int j = i + 1; j < state.size(); ++j) {
-            const Vec3 d = images.separation(state.position[i], state.position[j]).d;
-            const double r2 = d.squaredNorm();
-            if (r2 >= reach) continue;
-            const int bin =
-                std::min(static_cast<int>(std::sqrt(r2) / largest_distance * bins), bins - 1);
-            const double product = field[i].dot(field[j]) / square;
-            const auto add = [&](int direction) {
-                result.value[direction][bin] += product;
-                result.pairs[direction][bin] += 1;
-            };
-            add(0);
-            for (int axis = 0; axis < 3; ++axis)
-                if (d[axis] * d[axis] > in_cone * r2) add(1 + axis);
+    PairDistances(state).each(largest_distance, [&](int i, int j, const Vec3& d, double r) {
+        const int bin = std::min(static_cast<int>(r / largest_distance * bins), bins - 1);
+        const double product = field[i].dot(field[j]) / square;
+        result.value[0][bin] += product;
+        result.pairs[0][bin] += 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (d[axis] * d[axis] <= in_cone * r * r) continue;
+            result.value[1 + axis][bin] += product;
+            result.pairs[1 + axis][bin] += 1;
         }
+    });
     for (int direction = 0; direction < 4; ++direction)
         for (int k = 0; k < bins; ++k)
             if (result.pairs[direction][k] > 0)
@@ -147,29 +166,35 @@ MeanFieldCorrelation mean_field_correlation(std::span<const FieldCorrelation> fr
 std::optional<CorrelationLength> correlation_length(std::span<const FieldCorrelation> frames,
                                                     double largest_distance, int direction)
 {
-    if (frames.empty()) return std::nullopt;
-    const double width =
-        largest_distance / static_cast<double>(frames.front().value[direction].size());
-    double before = 0, value_before = 1;
-    std::optional<std::size_t> bin_before;
-    for (const auto& [distance, bin] : common_bins(frames, width, direction)) {
-        const double value = mean_value(frames, direction, bin);
-        if (value < inverse_e) {
-            const double share = (value_before - inverse_e) / (value_before - value);
-            const double slope = (value_before - value) / (distance - before);
-            std::vector<double> there;
-            for (const FieldCorrelation& f : frames) {
-                const double first = bin_before ? f.value[direction][*bin_before] : 1;
-                there.push_back(first + share * (f.value[direction][bin] - first));
-            }
-            return CorrelationLength{before + share * (distance - before),
-                                     estimate_mean(there).standard_error / slope, !bin_before};
-        }
-        before = distance;
-        value_before = value;
-        bin_before = bin;
+    const Curve c = curve(frames, largest_distance, direction);
+    const auto at = crossing(c, inverse_e);
+    if (!at) return std::nullopt;
+    const std::size_t k = at->before;
+    const double slope = (c.mean[k] - c.mean[k + 1]) / (c.distance[k + 1] - c.distance[k]);
+    std::vector<double> there;
+    for (const auto& frame : c.frame) there.push_back(interpolated(frame, *at));
+    return CorrelationLength{interpolated(c.distance, *at),
+                             estimate_mean(there).standard_error / slope, k == 0};
+}
+
+std::optional<IntegralLength> integral_length(std::span<const FieldCorrelation> frames,
+                                              double largest_distance, int direction)
+{
+    const Curve c = curve(frames, largest_distance, direction);
+    if (c.mean.size() < 2) return std::nullopt;
+    const auto zero = crossing(c, 0);
+    const Crossing end = zero.value_or(Crossing{c.mean.size() - 2, 1});
+    std::vector<double> integrals;
+    for (const auto& frame : c.frame) {
+        double sum = 0;
+        for (std::size_t k = 0; k < end.before; ++k)
+            sum += (frame[k] + frame[k + 1]) / 2 * (c.distance[k + 1] - c.distance[k]);
+        const double rest = end.share * (c.distance[end.before + 1] - c.distance[end.before]);
+        integrals.push_back(sum + (frame[end.before] + interpolated(frame, end)) / 2 * rest);
     }
-    return std::nullopt;
+    const Estimate integral = estimate_mean(integrals);
+    return IntegralLength{integral.mean, integral.standard_error, interpolated(c.distance, end),
+                          zero.has_value()};
 }
 
 }

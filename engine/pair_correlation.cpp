@@ -1,6 +1,7 @@
 #include "engine/pair_correlation.h"
 
 #include "engine/error.h"
+#include "engine/pair_distances.h"
 #include "engine/units.h"
 
 #include <algorithm>
@@ -32,41 +33,6 @@ void check(const State& state, const CorrelationGrid& grid)
     if (!(grid.slab > 0) || grid.slab > 1)
         refuse("slab must be in (0, 1], got " + std::to_string(grid.slab));
 }
-
-/// The particles apart by components, and the squared distances of one from all behind it.
-class Distances {
-public:
-    explicit Distances(const State& s) : box_(s.box), square_(s.radius.size())
-    {
-        for (const Vec3& p : s.position) {
-            x_.push_back(p.x());
-            y_.push_back(p.y());
-            z_.push_back(p.z());
-        }
-    }
-
-    const std::vector<double>& from(int i)
-    {
-        const double lx = box_.length.x(), ly = box_.length.y(), lz = box_.length.z();
-        const double ix = 1 / lx, iy = 1 / ly, iz = 1 / lz;
-        const double x = x_[i], y = y_[i], z = z_[i], offset = box_.offset;
-        const int n = static_cast<int>(x_.size());
-        for (int j = i + 1; j < n; ++j) {
-            double dx = x_[j] - x, dy = y_[j] - y, dz = z_[j] - z;
-            const double q = nearest_integer(dy * iy);
-            dy -= q * ly;
-            dx -= q * offset;
-            dx -= lx * nearest_integer(dx * ix);
-            dz -= lz * nearest_integer(dz * iz);
-            square_[j] = dx * dx + dy * dy + dz * dz;
-        }
-        return square_;
-    }
-
-private:
-    Box box_;
-    std::vector<double> x_, y_, z_, square_;
-};
 
 /// Pairs counted in the bins of one frame.
 struct Counts {
@@ -101,27 +67,18 @@ Counts counted(const State& s, const std::vector<int>& kind, bool two_species,
     const double largest = *std::max_element(s.radius.begin(), s.radius.end());
     const double near_factor = 1 + grid.near_xi / 2;
     const double reach = std::max(grid.largest_distance, 2 * largest * near_factor);
-    const Images images(s.box);
-    Distances distances(s);
-    for (int i = 0; i < s.size(); ++i) {
-        const std::vector<double>& square = distances.from(i);
-        for (int j = i + 1; j < s.size(); ++j) {
-            if (square[j] >= reach * reach) continue;
-            const double r = std::sqrt(square[j]);
-            const Vec3 d = images.separation(s.position[i], s.position[j]).d;
-            const bool in_slab = std::abs(d.z()) < grid.slab * r;
-            if (r < (s.radius[i] + s.radius[j]) * near_factor) count_near(d, in_slab, grid, counts);
-            const double share = r / grid.largest_distance;
-            if (!(share < 1)) continue;
-            const int bin = std::min(static_cast<int>(share * grid.bins), grid.bins - 1);
-            counts.all[bin] += 1;
-            if (two_species) counts.by_species[kind[i] + kind[j]][bin] += 1;
-            if (!in_slab) continue;
-            const int ring = std::min(static_cast<int>(share * grid.map_bins), grid.map_bins - 1);
-            counts.map[static_cast<std::size_t>(ring) * grid.angles + angle_bin(d, grid.angles)] +=
-                1;
-        }
-    }
+    PairDistances(s).each(reach, [&](int i, int j, const Vec3& d, double r) {
+        const bool in_slab = std::abs(d.z()) < grid.slab * r;
+        if (r < (s.radius[i] + s.radius[j]) * near_factor) count_near(d, in_slab, grid, counts);
+        const double share = r / grid.largest_distance;
+        if (!(share < 1)) return;
+        const int bin = std::min(static_cast<int>(share * grid.bins), grid.bins - 1);
+        counts.all[bin] += 1;
+        if (two_species) counts.by_species[kind[i] + kind[j]][bin] += 1;
+        if (!in_slab) return;
+        const int ring = std::min(static_cast<int>(share * grid.map_bins), grid.map_bins - 1);
+        counts.map[static_cast<std::size_t>(ring) * grid.angles + angle_bin(d, grid.angles)] += 1;
+    });
     return counts;
 }
 

@@ -14,6 +14,9 @@ StepKind shear_step();
 StepKind flow_curve_step();
 StepKind stability_step();
 StepKind velocity_profile_step();
+StepKind contacts_step();
+StepKind structure_step();
+StepKind nonaffine_step();
 StepKind snapshot_step();
 StepKind plot_step();
 

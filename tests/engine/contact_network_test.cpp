@@ -179,13 +179,13 @@ TEST(ContactNetwork, TreesAreRattlersAndTheTailOfARingToo)
     const ContactNetwork net = contact_network(f, {.least_contacts = 2, .close_gap = 0});
     EXPECT_DOUBLE_EQ(net.rattler_fraction, 0.4);
     EXPECT_DOUBLE_EQ(net.contact_number, 2);
-    EXPECT_DOUBLE_EQ(net.contact_number_without_rattlers, 2);
-    EXPECT_DOUBLE_EQ(net.constraint_number_without_rattlers, 3);
+    EXPECT_DOUBLE_EQ(net.net_contact_number, 2);
+    EXPECT_DOUBLE_EQ(net.net_constraint_number, 3);
     EXPECT_DOUBLE_EQ(net.largest_cluster_fraction, 1);
     EXPECT_EQ(net.percolates_flow, 1);
     EXPECT_EQ(net.percolates_gradient, 0);
     EXPECT_DOUBLE_EQ(contact_network(f, {.least_contacts = 3}).rattler_fraction, 1);
-    EXPECT_EQ(contact_network(f, {.least_contacts = 3}).contact_number_without_rattlers, 0);
+    EXPECT_EQ(contact_network(f, {.least_contacts = 3}).net_contact_number, 0);
 }
 
 TEST(ContactNetwork, AgreesWithASlowTwin)

@@ -63,6 +63,38 @@ TEST(NonaffineField, PlaneWaveHasTheCorrelationSinKrOverKr)
     EXPECT_GT(l->standard_error, 0);
     EXPECT_LT(l->standard_error, 0.1);
     EXPECT_FALSE(l->formal);
+    // to the first zero, half a wave: Si(pi)/k
+    const auto integral = integral_length(frames, length / 2, 0);
+    ASSERT_TRUE(integral);
+    EXPECT_FALSE(integral->has_zero);  // at the last distance, beyond the last bin centre
+    const auto along = integral_length(frames, length / 2, 3);
+    ASSERT_TRUE(along);
+    EXPECT_TRUE(along->has_zero);
+}
+
+TEST(NonaffineField, IntegralLengthOfAKnownCorrelation)
+{
+    // C = 1 - r/4 in bins of width 1; the frames scatter by a factor 1 +- 0.1
+    std::vector<FieldCorrelation> frames;
+    for (int f = 0; f < 100; ++f) {
+        FieldCorrelation c;
+        for (int k = 0; k < 8; ++k) {
+            const double r = k + 0.5;
+            c.value[0].push_back((1 - r / 4) * (f % 2 ? 1.1 : 0.9));
+            c.pairs[0].push_back(k == 2 ? 0 : 5);  // a bin without pairs is bridged
+        }
+        frames.push_back(c);
+    }
+    const auto integral = integral_length(frames, 8, 0);
+    ASSERT_TRUE(integral);
+    EXPECT_TRUE(integral->has_zero);
+    EXPECT_NEAR(integral->to, 4, 1e-12);
+    EXPECT_NEAR(integral->length, 2, 1e-12);
+    const auto l = correlation_length(frames, 8, 0);
+    ASSERT_TRUE(l);
+    EXPECT_NEAR(l->length, 4 * (1 - std::exp(-1)), 1e-12);
+    EXPECT_FALSE(l->formal);
+    EXPECT_FALSE(integral_length({}, 8, 0));
 }
 
 TEST(NonaffineField, IndependentVelocitiesHaveNoCorrelation)
