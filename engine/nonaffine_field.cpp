@@ -170,11 +170,12 @@ std::optional<CorrelationLength> correlation_length(std::span<const FieldCorrela
     const auto at = crossing(c, inverse_e);
     if (!at) return std::nullopt;
     const std::size_t k = at->before;
+    if (k == 0) return CorrelationLength{c.distance[1], 0, true};
     const double slope = (c.mean[k] - c.mean[k + 1]) / (c.distance[k + 1] - c.distance[k]);
     std::vector<double> there;
     for (const auto& frame : c.frame) there.push_back(interpolated(frame, *at));
     return CorrelationLength{interpolated(c.distance, *at),
-                             estimate_mean(there).standard_error / slope, k == 0};
+                             estimate_mean(there).standard_error / slope, false};
 }
 
 std::optional<IntegralLength> integral_length(std::span<const FieldCorrelation> frames,

@@ -15,8 +15,8 @@
 //                 whose separation is within 30 degrees of an axis. Nearest images, r <= half the
 //                 smallest box length.
 //   length        where C first falls through 1/e, linear between the bins and from C(0) = 1. Its
-//                 error is that of C there over the slope. If C is below 1/e at the first bin with
-//                 pairs already, that is at contact, the length is a formal one.
+//                 error is that of C there over the slope. If C is below 1/e already where the
+//                 nearest pairs are, at contact, nothing is known but that it is shorter.
 //   integral      of C from C(0) = 1 to its first zero, linear between the bins; sum a_i w_i = 0
 //   makes
 //                 C negative far away, so the zero moves out with the box.
@@ -65,18 +65,17 @@ MeanFieldCorrelation mean_field_correlation(std::span<const FieldCorrelation> fr
 
 struct CorrelationLength {
     double length = 0, standard_error = 0;  // [a]
-    bool formal = false;                    // below the first distance that pairs have
+    bool shorter = false;  // than `length`, the first distance that has pairs in every frame
 };
+/// None if C does not fall through 1/e. `direction`: 0 all, 1 x, 2 y, 3 z.
+std::optional<CorrelationLength> correlation_length(std::span<const FieldCorrelation> frames,
+                                                    double largest_distance, int direction);
+
 struct IntegralLength {
     double length = 0, standard_error = 0;  // [a]
     double to = 0;                          // the first zero, or the last bin without one [a]
     bool has_zero = false;
 };
-
-/// None if C does not fall through 1/e. `direction`: 0 all, 1 x, 2 y, 3 z.
-std::optional<CorrelationLength> correlation_length(std::span<const FieldCorrelation> frames,
-                                                    double largest_distance, int direction);
-
 /// None without a bin that has pairs in every frame.
 std::optional<IntegralLength> integral_length(std::span<const FieldCorrelation> frames,
                                               double largest_distance, int direction);

@@ -62,7 +62,7 @@ TEST(NonaffineField, PlaneWaveHasTheCorrelationSinKrOverKr)
     EXPECT_NEAR(l->length, 2.12665 / k, 0.05 + 4 * l->standard_error);
     EXPECT_GT(l->standard_error, 0);
     EXPECT_LT(l->standard_error, 0.1);
-    EXPECT_FALSE(l->formal);
+    EXPECT_FALSE(l->shorter);
     // to the first zero, half a wave: Si(pi)/k
     const auto integral = integral_length(frames, length / 2, 0);
     ASSERT_TRUE(integral);
@@ -93,7 +93,7 @@ TEST(NonaffineField, IntegralLengthOfAKnownCorrelation)
     const auto l = correlation_length(frames, 8, 0);
     ASSERT_TRUE(l);
     EXPECT_NEAR(l->length, 4 * (1 - std::exp(-1)), 1e-12);
-    EXPECT_FALSE(l->formal);
+    EXPECT_FALSE(l->shorter);
     EXPECT_FALSE(integral_length({}, 8, 0));
 }
 
@@ -114,7 +114,8 @@ TEST(NonaffineField, IndependentVelocitiesHaveNoCorrelation)
     EXPECT_LT(mean.value[0].back().standard_error, 0.003);
     const auto l = correlation_length(frames, 4, 0);
     ASSERT_TRUE(l);
-    EXPECT_TRUE(l->formal);  // already at the first bin
+    EXPECT_TRUE(l->shorter);  // than the first bin
+    EXPECT_NEAR(l->length, 0.25, 1e-12);
 }
 
 TEST(NonaffineField, PairsThatMoveTogetherHaveTheirExactCorrelation)

@@ -85,9 +85,12 @@ double thousandth_largest(const std::vector<std::vector<double>>& speeds)
 Json length_json(const std::optional<CorrelationLength>& length, std::size_t frames)
 {
     if (!length) return {{"outcome", "not reached, the correlation stays above 1/e"}};
+    if (length->shorter)
+        return {{"outcome", "shorter than the distance of the nearest pairs"},
+                {"shorter_than", length->length},
+                {"unit", "a"}};
     Json json = {{"mean", length->length}, {"standard_error", nullptr}, {"unit", "a"}};
     if (frames > 1) json["standard_error"] = length->standard_error;
-    if (length->formal) json["outcome"] = "formal, below 1/e already at the nearest pairs";
     return json;
 }
 
