@@ -42,21 +42,27 @@ bool has_colour(const Image& image, int column, int row, Colour colour, int slac
     return true;
 }
 
-bool is_painted(const Image& image, int column, int row, const PolarMap& map)
+std::vector<Colour> colours_of(const PolarMap& map)
 {
-    return std::any_of(map.values.begin(), map.values.end(), [&](double value) {
-        return has_colour(image, column, row, render::map_colour("inferno", value), 0);
-    });
+    std::vector<Colour> colours;
+    for (double value : map.values) colours.push_back(render::map_colour("inferno", value));
+    return colours;
+}
+
+bool is_painted(const Image& image, int column, int row, const std::vector<Colour>& colours)
+{
+    return std::any_of(colours.begin(), colours.end(),
+                       [&](Colour c) { return has_colour(image, column, row, c, 0); });
 }
 
 /// From the first painted row, the last one, and the first painted column; the colour bar is right
 /// of the disc and not higher.
-Disc disc(const Image& image, const PolarMap& map)
+Disc disc(const Image& image, const std::vector<Colour>& colours)
 {
     int left = image.width, top = image.height, bottom = 0;
     for (int row = 0; row < image.height; ++row)
         for (int column = 0; column < image.width; ++column)
-            if (is_painted(image, column, row, map)) {
+            if (is_painted(image, column, row, colours)) {
                 left = std::min(left, column);
                 top = std::min(top, row);
                 bottom = std::max(bottom, row);
@@ -73,13 +79,14 @@ TEST(PolarMap, PutsEverySectorAndItsOppositeAtItsPlace)
     const Image image = render::render_polar_map(map);
     ASSERT_EQ(image.height, 600);
     ASSERT_EQ(image.width, 720);
-    const Disc found = disc(image, map);
+    const std::vector<Colour> colours = colours_of(map);
+    const Disc found = disc(image, colours);
     const double x = found.x, y = found.y, radius = found.radius;
     EXPECT_GT(radius, 180);
     const int right = static_cast<int>(x + radius);  // as wide as high
     const int beside_tick = static_cast<int>(y) + 10;
-    EXPECT_TRUE(is_painted(image, right - 4, beside_tick, map));
-    EXPECT_FALSE(is_painted(image, right + 4, beside_tick, map));
+    EXPECT_TRUE(is_painted(image, right - 4, beside_tick, colours));
+    EXPECT_FALSE(is_painted(image, right + 4, beside_tick, colours));
     for (int turn = 0; turn < 8; ++turn) {
         const double theta = (turn + 0.5) * std::numbers::pi / 4;
         const auto at = [&](double r) {
