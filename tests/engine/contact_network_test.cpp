@@ -115,6 +115,12 @@ TEST(Clusters, RingsInsideTheBoxDoNotPercolate)
     wrap(f.state.box, f.state.position);
     for (int k = 0; k < 12; ++k) connect(f, k, (k + 1) % 12);
     expect_percolates(f, false, false, false);
+    // nor if their particles are stored as images far up and down
+    for (int k = 0; k < 12; ++k) {
+        const int up = k % 5 - 2, along = k % 3;
+        f.state.position[k] += Vec3(up * 2.2 + along * L, up * L, k % 2 * L);
+    }
+    expect_percolates(f, false, false, false);
 }
 
 TEST(Clusters, TwoRowsThatTouchPercolateAlongBoth)
