@@ -120,6 +120,7 @@ std::string array_label(const std::string& array)
     if (array == "angular_velocity") return "|$Ω$| / $γ̇$_{0}";
     if (array == "radius") return "radius / $a$";
     if (array == "contact_number") return "contacts per particle";
+    if (array == "normal_force") return "normal force / $F$*";
     if (array == "stress") return "|stresslet| / ($σ$_{0} $a$^{3})";
     std::string words = array;
     std::replace(words.begin(), words.end(), '_', ' ');

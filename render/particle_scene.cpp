@@ -10,6 +10,7 @@
 #include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkLight.h>
 #include <vtkNew.h>
@@ -57,6 +58,14 @@ vtkSmartPointer<vtkPolyData> sphere_data(const std::vector<ColouredSphere>& sphe
     return data;
 }
 
+void set_material(vtkProperty* property)
+{
+    property->SetAmbient(0.34);
+    property->SetDiffuse(0.80);
+    property->SetSpecular(0.16);
+    property->SetSpecularPower(30);
+}
+
 vtkSmartPointer<vtkActor> sphere_actor(const std::vector<ColouredSphere>& spheres)
 {
     vtkNew<vtkOpenGLSphereMapper> mapper;
@@ -67,11 +76,47 @@ vtkSmartPointer<vtkActor> sphere_actor(const std::vector<ColouredSphere>& sphere
     mapper->SetColorModeToDirectScalars();
     auto actor = vtkSmartPointer<vtkActor>::New();
     actor->SetMapper(mapper);
-    vtkProperty* property = actor->GetProperty();
-    property->SetAmbient(0.34);
-    property->SetDiffuse(0.80);
-    property->SetSpecular(0.16);
-    property->SetSpecularPower(30);
+    set_material(actor->GetProperty());
+    return actor;
+}
+
+vtkSmartPointer<vtkActor> rod_actor(const std::vector<ColouredRod>& rods)
+{
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> lines;
+    vtkNew<vtkDoubleArray> radii;
+    vtkNew<vtkUnsignedCharArray> colours;
+    radii->SetName("radius");
+    colours->SetName("colour");
+    colours->SetNumberOfComponents(3);
+    for (const ColouredRod& rod : rods) {
+        const vtkIdType ends[2] = {points->InsertNextPoint(rod.from.data()),
+                                   points->InsertNextPoint(rod.to.data())};
+        lines->InsertNextCell(2, ends);
+        for (int end = 0; end < 2; ++end) {
+            radii->InsertNextValue(rod.radius);
+            for (int channel : rod.colour)
+                colours->InsertNextValue(static_cast<unsigned char>(channel));
+        }
+    }
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetLines(lines);
+    data->GetPointData()->SetScalars(radii);
+    data->GetPointData()->AddArray(colours);
+    vtkNew<vtkTubeFilter> tubes;
+    tubes->SetInputData(data);
+    tubes->SetVaryRadiusToVaryRadiusByAbsoluteScalar();
+    tubes->SetNumberOfSides(16);
+    tubes->CappingOn();
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputConnection(tubes->GetOutputPort());
+    mapper->SetScalarModeToUsePointFieldData();
+    mapper->SelectColorArray("colour");
+    mapper->SetColorModeToDirectScalars();
+    auto actor = vtkSmartPointer<vtkActor>::New();
+    actor->SetMapper(mapper);
+    set_material(actor->GetProperty());
     return actor;
 }
 
@@ -141,6 +186,8 @@ void set_clipping(vtkRenderer* renderer, const ParticleScene& scene)
         farthest = std::max(farthest, scene.camera.depth(p) + radius);
     };
     for (const ColouredSphere& s : scene.spheres) include(s.sphere.centre, s.sphere.radius);
+    for (const ColouredRod& rod : scene.rods)
+        for (const Position& end : {rod.from, rod.to}) include(end, rod.radius);
     for (int corner = 0; corner < 8; ++corner)
         include({corner & 1 ? scene.box_length[0] : 0, corner & 2 ? scene.box_length[1] : 0,
                  corner & 4 ? scene.box_length[2] : 0},
@@ -200,6 +247,7 @@ Image render_scene(const ParticleScene& scene)
     renderer->SetBackground(1, 1, 1);
     renderer->AutomaticLightCreationOff();
     if (!scene.spheres.empty()) renderer->AddActor(sphere_actor(scene.spheres));
+    if (!scene.rods.empty()) renderer->AddActor(rod_actor(scene.rods));
     const auto& length = scene.box_length;
     if (length[0] > 0 && length[1] > 0 && length[2] > 0) {
         // Some 2.4 pixels wide in a picture 1000 pixels high, in the middle of the box.

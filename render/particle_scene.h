@@ -1,4 +1,4 @@
-// render/particle_scene.h -- lit spheres and the box, drawn by VTK.
+// render/particle_scene.h -- lit spheres and rods and the box, drawn by VTK.
 #pragma once
 #include "render/framing.h"
 #include "render/image.h"
@@ -12,8 +12,16 @@ struct ColouredSphere {
     Colour colour;
 };
 
+/// A round rod between two points.
+struct ColouredRod {
+    Position from{}, to{};
+    double radius = 0;
+    Colour colour;
+};
+
 struct ParticleScene {
     std::vector<ColouredSphere> spheres;
+    std::vector<ColouredRod> rods;
     std::array<double, 3> box_length{};  // outline [0, L]; any length 0: no outline
     Camera camera;
     bool ambient_occlusion = true;

@@ -6,25 +6,29 @@
 #include "render/particle_overlay.h"
 #include "render/particle_scene.h"
 
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkIdList.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace sigmaflow::render {
 namespace {
 
-vtkDataArray* point_array(vtkPolyData* particles, const std::string& name, const char* where)
+vtkDataArray* array_of(vtkDataSetAttributes* arrays, const std::string& name, const char* where)
 {
-    vtkPointData* arrays = particles->GetPointData();
     if (vtkDataArray* array = arrays->GetArray(name.c_str())) return array;
     std::string names;
     for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
         if (const char* known = arrays->GetArrayName(i))
             names += (names.empty() ? "" : ", ") + std::string(known);
-    throw Error(ErrorKind::input, where,
-                "the particles have no array \"" + name +
-                    "\", they have: " + (names.empty() ? "none" : names));
+    throw Error(
+        ErrorKind::input, where,
+        "there is no array \"" + name + "\", there are: " + (names.empty() ? "none" : names));
 }
 
 /// The values themselves, or the lengths of vectors (Frobenius norms of tensors).
@@ -79,7 +83,7 @@ std::vector<ColouredSphere> coloured_spheres(vtkPolyData* particles,
 {
     std::vector<ColouredSphere> spheres(values.size());
     if (spheres.empty()) return spheres;
-    vtkDataArray* radii = point_array(particles, "radius", "radius");
+    vtkDataArray* radii = array_of(particles->GetPointData(), "radius", "radius");
     for (std::size_t i = 0; i < spheres.size(); ++i) {
         Sphere& sphere = spheres[i].sphere;
         particles->GetPoint(i, sphere.centre.data());
@@ -107,6 +111,8 @@ std::vector<Sphere> contents(const ParticleScene& scene)
 {
     std::vector<Sphere> spheres;
     for (const ColouredSphere& s : scene.spheres) spheres.push_back(s.sphere);
+    for (const ColouredRod& rod : scene.rods)
+        for (const Position& end : {rod.from, rod.to}) spheres.push_back({end, rod.radius});
     const auto& length = scene.box_length;
     for (int corner = 0; corner < 8; ++corner)
         if (length[0] > 0 && length[1] > 0 && length[2] > 0)
@@ -118,23 +124,11 @@ std::vector<Sphere> contents(const ParticleScene& scene)
     return spheres;
 }
 
-}
-
-Image render_particles(vtkPolyData* particles, const ParticleView& view)
+/// The scene with its camera, and everything around it.
+Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleView& view)
 {
-    check(view);
-    std::vector<double> values;
-    bool whole_numbers = false;
-    if (particles->GetNumberOfPoints() > 0) {
-        vtkDataArray* array = point_array(particles, view.colour_by, "colour_by");
-        values = magnitudes(array);
-        whole_numbers = holds_whole_numbers(array);
-    }
-    const ColourScale scale = colour_scale(view, values, whole_numbers);
     const ParticleLayout layout =
         particle_layout(view.width, view.height, !view.title.empty(), view.colour_bar, view.triad);
-    ParticleScene scene;
-    scene.spheres = coloured_spheres(particles, values, scale);
     if (view.outline) scene.box_length = view.box_length;
     scene.ambient_occlusion = view.ambient_occlusion;
     scene.antialiasing = view.antialiasing;
@@ -154,6 +148,73 @@ Image render_particles(vtkPolyData* particles, const ParticleView& view)
           std::lround((room.top + room.bottom - spheres.height) / 2));
     rasterise(drawing, image);
     return image;
+}
+
+/// As thick as half a small sphere at the end of the colours.
+std::vector<ColouredRod> strong_rods(vtkPolyData* contacts, const std::vector<double>& values,
+                                     const ColourScale& scale, double smallest_radius)
+{
+    std::vector<ColouredRod> rods;
+    if (values.empty()) return rods;
+    const double mean =
+        std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
+    vtkNew<vtkIdList> ends;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (!(values[k] > mean)) continue;
+        contacts->GetCellPoints(static_cast<vtkIdType>(k), ends);
+        if (ends->GetNumberOfIds() != 2)
+            throw Error(ErrorKind::input, "contact " + std::to_string(k), "must be a line");
+        ColouredRod rod;
+        contacts->GetPoint(ends->GetId(0), rod.from.data());
+        contacts->GetPoint(ends->GetId(1), rod.to.data());
+        rod.radius = smallest_radius / 2 * std::min(1., values[k] / scale.range.to);
+        rod.colour = scale.colour(values[k]);
+        rods.push_back(rod);
+    }
+    return rods;
+}
+
+}
+
+Image render_particles(vtkPolyData* particles, const ParticleView& view)
+{
+    check(view);
+    std::vector<double> values;
+    bool whole_numbers = false;
+    if (particles->GetNumberOfPoints() > 0) {
+        vtkDataArray* array = array_of(particles->GetPointData(), view.colour_by, "colour_by");
+        values = magnitudes(array);
+        whole_numbers = holds_whole_numbers(array);
+    }
+    const ColourScale scale = colour_scale(view, values, whole_numbers);
+    ParticleScene scene;
+    scene.spheres = coloured_spheres(particles, values, scale);
+    return picture_of(std::move(scene), scale, view);
+}
+
+Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const ParticleView& view)
+{
+    check(view);
+    constexpr Colour grey{176, 176, 182};
+    constexpr double shown = 0.22;  // of the radii
+    std::vector<double> values;
+    if (contacts->GetNumberOfCells() > 0)
+        values = magnitudes(array_of(contacts->GetCellData(), view.colour_by, "colour_by"));
+    const ColourScale scale = colour_scale(view, values, false);
+    ParticleScene scene;
+    scene.spheres =
+        coloured_spheres(particles, std::vector<double>(particles->GetNumberOfPoints()), scale);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (ColouredSphere& s : scene.spheres) {
+        smallest = std::min(smallest, s.sphere.radius);
+        s.sphere.radius *= shown;
+        s.colour = grey;
+    }
+    scene.rods = strong_rods(contacts, values, scale, smallest);
+    for (const ColouredRod& rod : scene.rods)  // round ends
+        for (const Position& end : {rod.from, rod.to})
+            scene.spheres.push_back({{end, rod.radius}, rod.colour});
+    return picture_of(std::move(scene), scale, view);
 }
 
 }

@@ -32,4 +32,9 @@ struct ParticleView {
 
 Image render_particles(vtkPolyData* particles, const ParticleView& view);
 
+/// The chains of strong contacts: rods along the lines of `contacts` whose value is above the mean,
+/// coloured and thick by it, between small grey spheres. `colour_by` is a cell array of the
+/// contacts with one component.
+Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const ParticleView& view);
+
 }

@@ -26,8 +26,10 @@ struct Snapshot {
         f("strain", strain, io::between(0, 1e4), "-",
           "draw the stored frame nearest to this strain; default: the last one");
         f("colour_by", colour_by,
-          std::vector<std::string_view>{"nonaffine_speed", "contact_number", "radius", "species"},
-          "what the colours show; nonaffine_speed is |U - U_inf|/(shear rate a)");
+          std::vector<std::string_view>{"nonaffine_speed", "contact_number", "radius", "species",
+                                        "normal_force"},
+          "what the colours show; nonaffine_speed is |U - U_inf|/(shear rate a); normal_force "
+          "[F*]: the chains of contacts above the mean force, between small spheres");
         f("colour_map", colour_map, std::vector<std::string_view>{"inferno", "viridis", "paper"},
           "paper: dark grey to yellow");
         f("colour_maximum", colour_maximum, io::above(0), "-",
@@ -67,8 +69,11 @@ struct Snapshot {
                      ", $γ$ = " + short_number(frame.state.strain);
         context.results["strain"] = frame.state.strain;
         draw_or_note(context, [&] {
+            const auto particles = io::particles_polydata(frame);
             const render::Image image =
-                render::render_particles(io::particles_polydata(frame), view);
+                colour_by == "normal_force"
+                    ? render::render_chains(particles, io::contacts_polydata(frame), view)
+                    : render::render_particles(particles, view);
             io::write_file(context.folder.file(context.step_name + ".png"),
                            render::png_bytes(image));
         });
