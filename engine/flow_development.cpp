@@ -18,8 +18,8 @@ Moment moment_of(const GapFlow& flow)
 {
     return {.time = flow.time,
             .amplitude = mode_amplitude(flow, flow.rate, 1),
-            .stress_below = flow.stress.front(),
-            .stress_above = flow.stress.back(),
+            .mean_rate = velocities(flow).back(),
+            .middle_stress = flow.stress[flow.stress.size() / 2],
             .rate = flow.rate};
 }
 
@@ -108,8 +108,8 @@ Development develop(const Constitution& constitution, const MemoryFlow& theory,
 {
     const std::vector<Complex> roots = growth_rates(theory, plan.reynolds);
     Development result{.moments = {}, .expected = roots[0]};
-    GapFlow flow = disturbed_flow(constitution, GapEnds::walls, plan.reynolds, plan.cells, 1,
-                                  plan.disturbance);
+    GapFlow flow = disturbed_flow(constitution, GapEnds::imposed_stress, plan.reynolds, plan.cells,
+                                  1, plan.disturbance);
     result.moments.push_back(moment_of(flow));
     const auto steps = static_cast<long>(plan.time / plan.step);
     try {

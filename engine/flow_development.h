@@ -1,9 +1,10 @@
 // engine/flow_development.h -- a small disturbance of uniform flow in a gap, followed from its
 // first growth or decay to where it ends, beside the linear theory.
 //
-// Integrated by engine/one_dimensional_flow.h between walls with the first mode disturbed. Growth
+// Integrated by engine/one_dimensional_flow.h between walls of imposed stress, with the first mode
+// disturbed. Rates, stresses and times (1/rate) are over those of the uniform flow. Growth
 // and frequency are measured by engine/exponents.h where the mode is still smaller than 1e-3 of the
-// mean rate, and all roots but the first two have died out by exp(-8).
+// rate, and all roots but the first two have died out by exp(-8).
 //
 // Tests: a stable, an unstable and an overdamped case.
 #pragma once
@@ -19,9 +20,9 @@ namespace sigmaflow {
 struct DevelopmentPlan {
     double reynolds = 0;
     int cells = 32;
-    double disturbance = 1e-6;  // of the rate [mean rate]
-    double time = 0;            // [mean strain]
-    double step = 0;            // [mean strain]
+    double disturbance = 1e-6;  // of the rate
+    double time = 0;            //
+    double step = 0;            //
     int steps_between_samples = 5;
 };
 
@@ -30,10 +31,11 @@ struct DevelopmentPlan {
 DevelopmentPlan plan_development(const MemoryFlow& theory, double reynolds, double disturbance);
 
 struct Moment {
-    double time = 0;                            // [mean strain]
-    double amplitude = 0;                       // of the first mode in the rate [mean rate]
-    double stress_below = 0, stress_above = 0;  // at the walls [stress of the base state]
-    std::vector<double> rate;                   // of each volume, from y = 0 [mean rate]
+    double time = 0;
+    double amplitude = 0;      // of the first mode in the rate
+    double mean_rate = 1;      // over the gap: what a rheometer shows
+    double middle_stress = 1;  // at H/2
+    std::vector<double> rate;  // of each volume, from y = 0
 };
 
 enum class Fate {
@@ -44,7 +46,7 @@ enum class Fate {
 
 struct Development {
     std::vector<Moment> moments;
-    std::complex<double> expected = {};                 // the first root [mean rate]
+    std::complex<double> expected = {};                 // the first root
     std::optional<std::complex<double>> measured = {};  // nothing: too few values
     Fate fate = Fate::changing;
     double smallest_rate = 1, largest_rate = 1;  // in the last quarter

@@ -28,7 +28,8 @@ Eigen::Index size(const GapFlow& flow)
     return static_cast<Eigen::Index>(flow.rate.size());
 }
 
-/// d^2/dy^2 of the stress at the centres. Without fluxes through walls, whose velocity is imposed.
+/// d^2/dy^2 of the deviation of the stress from that of the base state, at the centres. No flux
+/// where the velocity is imposed; where the stress is, it is that of the base state.
 Sparse second_derivative(const GapFlow& flow)
 {
     const Eigen::Index n = size(flow);
@@ -42,6 +43,8 @@ Sparse second_derivative(const GapFlow& flow)
     };
     for (Eigen::Index j = 0; j + 1 < n; ++j) face(j, j + 1);
     if (flow.ends == GapEnds::periodic) face(n - 1, 0);
+    if (flow.ends == GapEnds::imposed_stress)  // half a volume away
+        for (Eigen::Index j : {Eigen::Index{0}, n - 1}) entries.emplace_back(j, j, -2 * over);
     Sparse result(n, n);
     result.setFromTriplets(entries.begin(), entries.end());
     return result;
@@ -89,7 +92,7 @@ public:
         constexpr int most = 25;
         VectorXd stress = guess;
         for (int k = 0; k < most; ++k) {
-            const VectorXd rate = before.rate + h / reynolds_ * (second_ * stress);
+            const VectorXd rate = before.rate + h / reynolds_ * (second_ * deviation(stress));
             VectorXd residual(stress.size()), by_rate(stress.size()), by_stress(stress.size());
             for (Eigen::Index j = 0; j < stress.size(); ++j) {
                 const Structure s = structure(before, j, rate[j], stress[j], h);
@@ -115,6 +118,8 @@ public:
     }
 
 private:
+    static VectorXd deviation(const VectorXd& stress) { return stress.array() - 1; }
+
     Structure structure(const Fields& before, Eigen::Index j, double rate, double stress,
                         double h) const
     {
@@ -138,7 +143,7 @@ private:
     Stage stage(const Fields& before, const VectorXd& stress, double h) const
     {
         Stage result{.value = before, .slope = before, .stress = stress};
-        result.slope.rate = second_ * stress / reynolds_;
+        result.slope.rate = second_ * deviation(stress) / reynolds_;
         result.value.rate = before.rate + h * result.slope.rate;
         const VectorXd target = stress.unaryExpr(constitution_.target);
         for (std::size_t i = 0; i < constitution_.c.size(); ++i) {
@@ -169,9 +174,11 @@ Stage stepped(const StageSolver& solver, const Stage& from, double h, int depth)
     return stepped(solver, middle, h / 2, depth - 1);
 }
 
-double wave_number(GapEnds ends, int mode)
+double mode_at(GapEnds ends, int mode, double y)
 {
-    return (ends == GapEnds::walls ? 1 : 2) * mode * std::numbers::pi;
+    const double angle = mode * std::numbers::pi * y;
+    if (ends == GapEnds::imposed_stress) return std::sin(angle);
+    return std::cos(ends == GapEnds::periodic ? 2 * angle : angle);
 }
 
 VectorXd vector_of(std::span<const double> x)
@@ -196,7 +203,7 @@ GapFlow disturbed_flow(const Constitution& constitution, GapEnds ends, double re
     const double s = constitution.target(1);
     for (int j = 0; j < cells; ++j) {
         const double y = (j + 0.5) / cells;
-        flow.rate.push_back(1 + amplitude * std::cos(wave_number(ends, mode) * y));
+        flow.rate.push_back(1 + amplitude * mode_at(ends, mode, y));
         flow.stress.push_back(constitution.stress(flow.rate.back(), s));
     }
     flow.parts.assign(constitution.c.size(), std::vector<double>(flow.rate.size(), s));
@@ -232,8 +239,7 @@ double mode_amplitude(const GapFlow& flow, std::span<const double> field, int mo
     const auto n = static_cast<double>(field.size());
     double sum = 0;
     for (std::size_t j = 0; j < field.size(); ++j)
-        sum +=
-            field[j] * std::cos(wave_number(flow.ends, mode) * (static_cast<double>(j) + 0.5) / n);
+        sum += (field[j] - 1) * mode_at(flow.ends, mode, (static_cast<double>(j) + 0.5) / n);
     return 2 * sum / n;
 }
 

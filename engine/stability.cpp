@@ -237,6 +237,16 @@ int growing_roots(const MemoryFlow& flow, double reynolds, int mode)
         std::count_if(all.begin(), all.end(), [](const Complex& x) { return x.real() > 0; }));
 }
 
+double growth_at_imposed_rate(const MemoryFlow& flow)
+{
+    const Response r = response(flow);
+    const std::vector<Complex> zeros = roots(numerator(r, r.c));
+    const auto largest =
+        std::max_element(zeros.begin(), zeros.end(),
+                         [](const Complex& a, const Complex& b) { return a.real() < b.real(); });
+    return largest->real();
+}
+
 int unstable_roots(const MemoryFlow& flow, double reynolds, int mode)
 {
     check_place(reynolds, mode);

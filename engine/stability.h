@@ -27,6 +27,10 @@
 // most. For B_i >= 0 there is one onset if b < 0 and none if b >= 0, because Re C then lies between
 // b and h. With one exponential and w_0 = 0 all this is the paper's: x^2 + x (D + c b) + c D = 0.
 //
+// At an imposed mean rate there is also k = 0, D = 0: C(x) = 0 has a positive root if b < 0, -b c
+// for one exponential. Uniform flow then leaves the falling branch whatever Re is; the onset above
+// holds for an imposed stress.
+//
 // Tests: roots against the matrix of the linear system and the argument principle, onset against
 // bisection of the growth rate, growth in time of the differential equations, the paper's formulas.
 #pragma once
@@ -83,6 +87,10 @@ std::vector<std::complex<double>> growth_rates(const MemoryFlow& flow, double re
 
 /// How many of them have a positive real part.
 int growing_roots(const MemoryFlow& flow, double reynolds, int mode = 1);
+
+/// The largest real part of the zeros of C: the growth of a disturbance of uniform flow as a whole
+/// when its rate is imposed; negative: stable. Errors: input.
+double growth_at_imposed_rate(const MemoryFlow& flow);
 
 /// The number of roots with a positive real part by the argument principle, independent of the
 /// polynomial. Errors: input; numerics (a root on the imaginary axis).

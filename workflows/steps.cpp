@@ -7,9 +7,15 @@ namespace sigmaflow::workflows {
 
 std::span<const StepKind> step_kinds()
 {
-    static const std::array kinds{pack_step(),       equilibrate_step(), shear_step(),
-                                  flow_curve_step(), stability_step(),   velocity_profile_step(),
-                                  snapshot_step(),   plot_step()};
+    static const std::array kinds{pack_step(),
+                                  equilibrate_step(),
+                                  shear_step(),
+                                  flow_curve_step(),
+                                  stability_step(),
+                                  one_dimensional_flow_step(),
+                                  velocity_profile_step(),
+                                  snapshot_step(),
+                                  plot_step()};
     return kinds;
 }
 

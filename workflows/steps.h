@@ -13,6 +13,7 @@ StepKind equilibrate_step();
 StepKind shear_step();
 StepKind flow_curve_step();
 StepKind stability_step();
+StepKind one_dimensional_flow_step();
 StepKind velocity_profile_step();
 StepKind snapshot_step();
 StepKind plot_step();
