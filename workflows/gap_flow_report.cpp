@@ -10,10 +10,6 @@ namespace sigmaflow::workflows {
 
 namespace {
 
-double mean_rate(const Moment& m)
-{
-    return m.mean_rate;
-}
 double middle_rate(const Moment& m)
 {
     return m.rate[m.rate.size() / 2];
@@ -22,6 +18,9 @@ double wall_rate(const Moment& m)
 {
     return m.rate.front();
 }
+
+// Deviations are drawn, because those of a stable flow are too small to be read beside 1.
+constexpr const char* deviation_title = "shear rate over that of uniform flow, minus 1";
 
 /// At most `most` of the moments, evenly.
 std::vector<const Moment*> thinned(const std::vector<Moment>& moments, std::size_t most)
@@ -79,10 +78,12 @@ std::string field_text(const Development& development)
 
 render::Plot rates_plot(render::Plot plot, const Development& d)
 {
-    plot.y.title = "shear rate over that of uniform flow";
-    plot.series = {series_of(d, "in the middle", middle_rate),
-                   series_of(d, "at the walls", wall_rate),
-                   series_of(d, "mean, what a rheometer shows", mean_rate)};
+    plot.y.title = deviation_title;
+    plot.series = {
+        series_of(d, "in the middle", [](const Moment& m) { return middle_rate(m) - 1; }),
+        series_of(d, "at the walls", [](const Moment& m) { return wall_rate(m) - 1; }),
+        series_of(d, "mean, what a rheometer shows",
+                  [](const Moment& m) { return m.mean_rate - 1; })};
     return plot;
 }
 
@@ -110,26 +111,36 @@ render::Plot growth_plot(render::Plot plot, const Development& d, double disturb
 
 render::Plot profiles_plot(render::Plot plot, const Development& d)
 {
-    plot.x.title = "shear rate over that of uniform flow";
+    plot.x.title = deviation_title;
     plot.y.title = "$y$/$H$";
     plot.y.minimum = 0;
     plot.y.maximum = 1;
     const double frequency = d.frequency > 0 ? d.frequency : std::abs(d.expected.imag());
     const double end = d.moments.back().time;
     const double period = frequency > 0 ? std::min(2 * std::acos(-1) / frequency, end) : end;
-    constexpr int lines = 8;
+    constexpr int lines = 6;
+    double lowest = 0, highest = 0;
     for (int k = 0; k < lines; ++k) {
         const double time = end - period + period * k / lines;
         const auto at = std::lower_bound(d.moments.begin(), d.moments.end() - 1, time,
                                          [](const Moment& m, double t) { return m.time < t; });
         render::Series series;
         series.label = "strain " + short_number(at->time);
-        series.x = at->rate;
+        for (double rate : at->rate) {
+            series.x.push_back(rate - 1);
+            lowest = std::min(lowest, rate - 1);
+            highest = std::max(highest, rate - 1);
+        }
         for (std::size_t j = 0; j < at->rate.size(); ++j)
             series.y.push_back((static_cast<double>(j) + 0.5) /
                                static_cast<double>(at->rate.size()));
         plot.series.push_back(std::move(series));
     }
+    if (highest > lowest) {  // room for the legend beside the lines
+        plot.x.minimum = lowest - 0.05 * (highest - lowest);
+        plot.x.maximum = highest + 0.35 * (highest - lowest);
+    }
+    plot.legend = render::Legend::top_right;
     return plot;
 }
 

@@ -17,7 +17,7 @@ std::string field_text(const Development& development);
 render::Plot rates_plot(render::Plot plot, const Development& d);
 /// the amplitude beside the linear theory,
 render::Plot growth_plot(render::Plot plot, const Development& d, double disturbance);
-/// the rate across the gap at eight moments of the last oscillation.
+/// the rate across the gap at six moments of the last oscillation.
 render::Plot profiles_plot(render::Plot plot, const Development& d);
 
 }

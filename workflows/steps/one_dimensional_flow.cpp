@@ -54,7 +54,7 @@ std::string fate_text(const Development& d, double disturbance)
     if (d.expected.real() < 0) return "stable, the disturbance still decays";
     if (d.largest_rate - d.smallest_rate < 100 * disturbance)
         return "unstable, the disturbance is still small";
-    return "unstable, not yet steady, " + between;
+    return "unstable, irregular or not yet steady, " + between;
 }
 
 struct OneDimensionalFlow {
