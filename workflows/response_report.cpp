@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 namespace sigmaflow::workflows {
@@ -148,14 +149,22 @@ Json fit(Quantity& q, const std::vector<double>& strain)
             {"better", q.fit->terms.size() == 1 ? "one" : "two"}};
 }
 
-Json kernel_json(const MemoryKernel& kernel)
+/// What "stability" takes over: weights are those of the rate's exponentials, relative to each
+/// other (engine/stability.h). Nothing if they are not resolved, or of different signs.
+std::optional<Json> memory_json(const Relaxation& rate, double viscosity_of_the_jump)
 {
-    Json json{{"weights", Json::array()}, {"relaxation_strains", Json::array()}};
-    for (const MemoryTerm& term : kernel.terms) {
-        json["weights"].push_back(term.weight.mean);
-        json["relaxation_strains"].push_back(1 / term.c.mean);
+    double sum = 0;
+    for (const RelaxationTerm& term : rate.terms) sum += term.amplitude.mean;
+    Json json;
+    for (const RelaxationTerm& term : rate.terms) {
+        if (!(term.amplitude.mean / sum > 0)) return std::nullopt;
+        json["relaxation_strains"].push_back(term.relaxation_strain.mean);
+        json["relaxation_strain_errors"].push_back(term.relaxation_strain.standard_error);
+        json["weights"].push_back(term.amplitude.mean / sum);
+        json["weight_errors"].push_back(term.amplitude.standard_error / std::abs(sum));
     }
-    json["instantaneous"] = kernel.instantaneous;
+    json["instantaneous_viscosity"] = viscosity_of_the_jump;
+    if (!rate.resolved) return std::nullopt;
     return json;
 }
 
@@ -260,9 +269,11 @@ void report_response(Context& context, const StressStep& step,
     const Quantity& rate = named(quantities, "shear_rate");
     context.results["relaxation_strain"] =
         value_json(rate.fit->terms.front().relaxation_strain, "-");
-    context.results["memory_kernel"] =
-        kernel_json(kernel_of_rate(*rate.fit, context.results["rate_before"]["mean"],
-                                   step.stress_before, step.stress_after - step.stress_before));
+    const auto memory =
+        memory_json(*rate.fit, context.results["viscosity_of_the_jump"]["mean"].get<double>());
+    if (memory) context.results["memory"] = *memory;
+    context.results["outcome"] =
+        memory ? "the rate relaxes" : "the relaxation of the rate is not resolved";
     for (const Quantity& q : quantities)
         if (contains(drawn, q.name))
             write_plot(context, context.step_name + "_" + q.name, plot_of(before, after, q, size));

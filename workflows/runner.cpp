@@ -101,6 +101,7 @@ void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json
                                  goes_on ? std::move(plan.checkpoint) : std::nullopt);
             manifest.add_step(run_step(step, planned.identity, context));
         }
+        context.finished[step.name] = context.results;
         Json entry = {{"step", step.kind}};
         entry.update(context.results);
         summary["steps"][step.name] = std::move(entry);
@@ -148,7 +149,8 @@ void run_workflow(const RunOptions& options, std::ostream& results)
                     .last_run = {},
                     .step_name = {},
                     .results = {},
-                    .problems = {}};
+                    .problems = {},
+                    .finished = {}};
     Json summary = {{"workflow", workflow.name}, {"steps", Json::object()}};
     try {
         run_steps(workflow, std::move(plan), context, summary, manifest);

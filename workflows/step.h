@@ -17,6 +17,7 @@
 #include "workflows/suspension.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -74,6 +75,7 @@ struct Plan {
 
     std::vector<PlannedRun> runs;
     std::vector<PlannedPicture> pictures;
+    std::vector<std::string> responses;  // steps "step_stress"
 
     /// Error(input) if no step before has made a packing.
     void need_state(const io::JsonNode& step) const;
@@ -118,6 +120,7 @@ struct Context {
     std::string step_name;           // of the step that is running
     nlohmann::ordered_json results;  // of the step that is running, for summary.json
     std::vector<Problem> problems;
+    std::map<std::string, nlohmann::ordered_json> finished;  // results of the steps so far
 
     const Run& run(const std::string& name) const;
 };

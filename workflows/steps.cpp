@@ -23,6 +23,7 @@ std::span<const StepKind> step_kinds()
                                   contacts_step(),
                                   structure_step(),
                                   nonaffine_step(),
+                                  one_dimensional_flow_step(),
                                   velocity_profile_step(),
                                   snapshot_step(),
                                   plot_step(),

@@ -21,6 +21,7 @@ StepKind compare_step();
 StepKind jamming_step();
 StepKind step_stress_step();
 StepKind wyart_cates_step();
+StepKind one_dimensional_flow_step();
 StepKind velocity_profile_step();
 StepKind contacts_step();
 StepKind structure_step();

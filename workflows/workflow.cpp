@@ -216,7 +216,8 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::filesyste
               .uses = {},
               .endings = {},
               .runs = {},
-              .pictures = {}};
+              .pictures = {},
+              .responses = {}};
     for (std::size_t i = 0; i < texts.size(); ++i) {
         Step& step = workflow.steps[i];
         read_step(step, texts[i]);

@@ -269,7 +269,10 @@ TEST_F(SmallRun, StabilityFollowsFromTheFlowCurve)
     EXPECT_NEAR(critical, -pi * pi * 0.05 / (viscosity * slope), 1e-9 * critical);
     EXPECT_GT(worst["critical_reynolds"]["standard_error"].get<double>(),
               0.2 * critical);  // that of c alone
-    for (const char* name : {"stability.csv", "stability.png", "stability_growth.svg"})
+    EXPECT_EQ(worst["growing_roots_at_twice_critical"]["by_polynomial"], 2);
+    EXPECT_EQ(worst["growing_roots_at_twice_critical"]["by_argument_principle"], 2);
+    for (const char* name : {"stability.csv", "stability.png", "stability_growth.svg",
+                             "stability_map.csv", "stability_map.png"})
         EXPECT_GT(std::filesystem::file_size(folder / "out/falls" / name), 300u) << name;
 }
 
@@ -311,6 +314,36 @@ TEST_F(SmallRun, WyartCatesFitsTheViscositiesOfAllVolumeFractions)
         EXPECT_GT(std::filesystem::file_size(folder / "out/fitted" / name), 300u) << name;
 }
 
+TEST_F(SmallRun, OneDimensionalFlowGrowsAsTheLinearTheorySays)
+{
+    write("gap.json", R"({"suspension": {"particles": 100, "volume_fraction": 0.58},
+        "steps": [{"step": "pack"},
+                  {"step": "shear", "sweep": {"stress": [0.5, 1, 2]}, "strain": 1},
+                  {"step": "one_dimensional_flow", "cells": 8, "disturbance": 1e-4, "width": 640,
+                   "height": 360},
+                  {"step": "one_dimensional_flow", "name": "measured", "cells": 8,
+                   "relaxation_strains": [0.02, 0.002], "weights": [0.3, 0.7],
+                   "instantaneous_viscosity": 9.5, "reynolds_over_critical": 0.7,
+                   "disturbance": 1e-4, "width": 640, "height": 360}]})");
+    const Said said = run("run gap.json -q");
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const Json steps = json("out/gap/summary.json")["steps"];
+    for (const char* name : {"one_dimensional_flow", "measured"}) {
+        const Json step = steps[name];
+        EXPECT_EQ(step["agrees"], true) << step;
+        const bool unstable = std::string(name) != "measured";
+        EXPECT_EQ(step["integrated"]["growth"].get<double>() > 0, unstable);
+        EXPECT_EQ(step["outcome"].get<std::string>().substr(0, 8),
+                  unstable ? "unstable" : "stable, ");
+        EXPECT_NEAR(step["reynolds"].get<double>() / step["critical_reynolds"].get<double>(),
+                    unstable ? 2 : 0.7, 1e-12);
+        const std::string base = "out/gap/" + std::string(name);
+        for (const char* end :
+             {".csv", "_field.csv", ".png", "_growth.png", "_profiles.png", ".svg"})
+            EXPECT_GT(std::filesystem::file_size(folder / (base + end)), 1000u) << name << end;
+    }
+}
+
 TEST_F(SmallRun, NoPictureIsDrawnOfWhatHasNoPoints)
 {
     write("all_jam.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.61},
@@ -318,7 +351,9 @@ TEST_F(SmallRun, NoPictureIsDrawnOfWhatHasNoPoints)
                   {"step": "shear", "sweep": {"stress": [40, 80]}, "strain": 0.5},
                   {"step": "pack", "name": "denser", "volume_fraction": 0.605},
                   {"step": "shear", "name": "denser_shear", "sweep": {"stress": [40, 80]}, "strain": 0.5},
-                  {"step": "flow_curve"}, {"step": "stability"}, {"step": "wyart_cates"}]})");
+                  {"step": "flow_curve"}, {"step": "stability"}, {"step": "wyart_cates"},
+                  {"step": "one_dimensional_flow"},
+                  {"step": "one_dimensional_flow", "name": "asked", "stress": 1, "reynolds": 1}]})");
     const Said said = run("run all_jam.json -q");
     ASSERT_EQ(said.exit_code, 0) << said.err;
     const Json steps = json("out/all_jam/summary.json")["steps"];
@@ -328,6 +363,8 @@ TEST_F(SmallRun, NoPictureIsDrawnOfWhatHasNoPoints)
     EXPECT_EQ(steps["stability"]["outcome"], "nothing to say, no two neighbouring stresses flow");
     EXPECT_EQ(steps["wyart_cates"]["outcome"],
               "nothing fitted: 4 parameters need at least 5 flowing points, there are 0");
+    for (const char* name : {"one_dimensional_flow", "asked"})
+        EXPECT_EQ(steps[name]["outcome"].get<std::string>().substr(0, 14), "not integrated");
     for (const char* name :
          {"flow_curve", "flow_curve_viscosity", "stability", "wyart_cates", "wyart_cates_map"})
         EXPECT_FALSE(

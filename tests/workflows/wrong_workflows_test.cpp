@@ -359,6 +359,16 @@ std::vector<Mistake> mistakes_of_the_steps()
          after_shear("{\"step\": \"velocity_profile\", \"of\": @\"sheer\"}"),
          "/steps/2/of",
          {"must be one of shear", "did you mean \"shear\"?"}},
+        {"weights_of_other_number",
+         after_shear("{\"step\": \"stability\", \"relaxation_strains\": [0.02, 0.002], "
+                     "\"weights\": @[1]}"),
+         "/steps/2/weights",
+         {"must have 2 numbers, one for each of relaxation_strains"}},
+        {"gap_flow_of_an_unknown_curve",
+         step("{\"step\": \"shear\", \"sweep\": {\"stress\": [1, 2]}},\n    "
+              "{\"step\": \"one_dimensional_flow\", \"volume_fraction\": @0.3}"),
+         "/steps/2/volume_fraction",
+         {"must be one that was sheared at imposed stresses"}},
         {"one_bin",
          after_shear("{\"step\": \"velocity_profile\", \"bins\": @1}"),
          "/steps/2/bins",

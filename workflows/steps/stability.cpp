@@ -1,7 +1,6 @@
 // Step "stability": up to which Reynolds number is the uniform flow of a flow curve stable?
-#include "engine/stability.h"
 #include "io/atomic_file.h"
-#include "workflows/measured_curves.h"
+#include "workflows/falling_intervals.h"
 #include "workflows/pictures.h"
 #include "workflows/steps.h"
 
@@ -14,62 +13,6 @@ namespace sigmaflow::workflows {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Between two neighbouring stresses of a curve.
-struct Interval {
-    double volume_fraction = 0, from = 0, to = 0;  // stresses [sigma0]
-    UniformFlow flow = {};
-    std::optional<Onset> onset = {};
-
-    double stress() const { return (from + to) / 2; }
-    /// The critical Reynolds number is known, but for an error smaller than itself; others stand in
-    /// the table only.
-    bool is_drawn() const { return onset->reynolds.standard_error < onset->reynolds.mean; }
-};
-
-/// Slope and viscosity in the middle. Their errors share those of the two rates; the slope's, which
-/// is far larger in relation, is taken as independent.
-Interval interval(double volume_fraction, const Measured& a, const Measured& b, Value relaxation)
-{
-    const double width = b.stress.mean - a.stress.mean;
-    const double rate = (a.rate.mean + b.rate.mean) / 2;
-    const double error = std::hypot(a.rate.standard_error, b.rate.standard_error);
-    Interval result{.volume_fraction = volume_fraction, .from = a.stress.mean, .to = b.stress.mean};
-    const double viscosity = result.stress() / rate;
-    result.flow = {.viscosity = {viscosity, viscosity * error / 2 / rate},
-                   .slope = {(b.rate.mean - a.rate.mean) / width, error / width},
-                   .relaxation = relaxation};
-    result.onset = onset_of_instability(result.flow);
-    return result;
-}
-
-/// Jammed points, and rates that are not positive, end a curve.
-std::vector<Interval> intervals_of(const Curves& curves, Value relaxation)
-{
-    std::vector<Interval> result;
-    for (const auto& [volume_fraction, curve] : curves) {
-        const Measured* before = nullptr;
-        for (const auto& [stress, m] : curve.by_stress) {
-            if (m.jammed || !(m.rate.mean > 0)) break;
-            if (before) result.push_back(interval(volume_fraction, *before, m, relaxation));
-            before = &m;
-        }
-    }
-    return result;
-}
-
-/// The interval with the smallest Re_c of each volume fraction.
-std::vector<Interval> least_stable(const std::vector<Interval>& falling)
-{
-    std::vector<Interval> result;
-    for (const Interval& i : falling) {
-        if (result.empty() || result.back().volume_fraction != i.volume_fraction)
-            result.push_back(i);
-        else if (i.onset->reynolds.mean < result.back().onset->reynolds.mean)
-            result.back() = i;
-    }
-    return result;
-}
 
 std::string csv_text(const std::vector<Interval>& intervals)
 {
@@ -94,6 +37,29 @@ std::string csv_text(const std::vector<Interval>& intervals)
     return text;
 }
 
+/// Growth of the first mode over gaps, in intervals with an onset.
+std::string map_text(const std::vector<Interval>& falling)
+{
+    std::string text =
+        "# gap [sqrt(eta0/(rho rate0))]; reynolds: rho rate gap^2/viscosity; growth, frequency: of "
+        "the first mode [shear rate]\n"
+        "volume_fraction,stress,gap,reynolds,growth,frequency\n";
+    for (const Interval& i : falling) {
+        constexpr int points = 40;
+        const double critical = i.onset->reynolds.mean;
+        for (int k = 0; k <= points; ++k) {
+            const double reynolds = critical * std::pow(10, -1 + 5. * k / points);
+            const auto root = growth_rates(i.flow, reynolds)[0];
+            text += io::number_text(i.volume_fraction);
+            for (double value : {i.stress(), gap_of(reynolds, i.rate(), i.flow.viscosity.mean),
+                                 reynolds, root.real(), std::abs(root.imag())})
+                text += "," + io::number_text(value);
+            text += "\n";
+        }
+    }
+    return text;
+}
+
 Json interval_json(const Interval& i)
 {
     return {{"volume_fraction", i.volume_fraction},
@@ -107,27 +73,31 @@ Json interval_json(const Interval& i)
              {{"mean", i.onset->reynolds.mean},
               {"standard_error", i.onset->reynolds.standard_error},
               {"unit", "-"}}},
-            {"frequency_at_onset", i.onset->frequency}};
+            {"frequency_at_onset", i.onset->frequency},
+            {"growth_at_imposed_rate", growth_at_imposed_rate(i.flow)},
+            {"gap",
+             {{"mean", gap_of(i.onset->reynolds.mean, i.rate(), i.flow.viscosity.mean)},
+              {"unit", "sqrt(eta0/(rho rate0))"}}},
+            {"growing_roots_at_twice_critical",
+             {{"by_polynomial", growing_roots(i.flow, 2 * i.onset->reynolds.mean)},
+              {"by_argument_principle", unstable_roots(i.flow, 2 * i.onset->reynolds.mean)}}}};
 }
 
 struct Stability {
-    double relaxation_strain = 0.023, relaxation_strain_error = 0;
+    MemoryParameters memory;
     PictureSize size;
     std::vector<PlannedRun> runs;  // of steps "shear", known when the step is validated
 
     void describe(io::Fields& f)
     {
-        f("relaxation_strain", relaxation_strain, io::between(1e-6, 100), "-",
-          "1/c: the microstructure follows a step in stress over this strain; default: Mari et al. "
-          "2015, phi = 0.58, stress 2 to 3");
-        f("relaxation_strain_error", relaxation_strain_error, io::between(0, 100), "-",
-          "its standard error");
+        memory.describe(f);
         size.describe(f);
     }
 
     void validate(const io::JsonNode& node, Plan& plan)
     {
         runs = runs_for_curves(node, plan);
+        memory.validate(node, plan, runs);
         plan.needs.plotted_pixels = size.pixels();
     }
 
@@ -190,18 +160,65 @@ struct Stability {
         return result;
     }
 
-    void run(Context& context) const
+    /// The gaps of equal growth against the stress: 0, the border of stability, for each volume
+    /// fraction, and growth for the one that is least stable.
+    render::Plot map_plot(const std::vector<Interval>& drawn) const
     {
-        const Value relaxation{1 / relaxation_strain,
-                               relaxation_strain_error / relaxation_strain / relaxation_strain};
-        const std::vector<Interval> all = intervals_of(curves_of(context, runs), relaxation);
+        render::Plot result = size.plot();
+        result.title = "Gaps in which uniform flow is stable (below) and unstable (above)";
+        result.x.title = "shear stress $σ$/$σ$_{0}";
+        result.y.title = "gap $H$ ($ρ$ $γ̇$_{0}/$η$_{0})^{1/2}";
+        result.x.logarithmic = result.y.logarithmic = true;
+        const auto line = [&](double volume_fraction, double growth, const std::string& label) {
+            render::Series series;
+            series.label = label;
+            for (const Interval& i : drawn) {
+                if (i.volume_fraction != volume_fraction) continue;
+                const auto reynolds = reynolds_of_growth(i.flow, growth);
+                if (!reynolds) continue;
+                series.x.push_back(i.stress());
+                series.y.push_back(gap_of(*reynolds, i.rate(), i.flow.viscosity.mean));
+            }
+            return series;
+        };
+        const std::vector<Interval> worst = least_stable(drawn);
+        for (std::size_t k = 0; k < worst.size(); ++k) {
+            render::Series border =
+                line(worst[k].volume_fraction, 0,
+                     "$ϕ$ = " + short_number(worst[k].volume_fraction) + ", border");
+            border.marker = render::Marker::circle;
+            border.colour = render::cycle_colour(k);
+            result.series.push_back(std::move(border));
+        }
+        const auto least =
+            std::min_element(worst.begin(), worst.end(), [](const Interval& a, const Interval& b) {
+                return a.onset->reynolds.mean < b.onset->reynolds.mean;
+            });
+        const auto colour = render::cycle_colour(static_cast<std::size_t>(least - worst.begin()));
+        for (const auto& [growth, style] :
+             {std::pair(3., render::Line::dashed), std::pair(10., render::Line::dotted)}) {
+            render::Series contour = line(least->volume_fraction, growth,
+                                          "$ϕ$ = " + short_number(least->volume_fraction) +
+                                              ", growth rate " + short_number(growth) + " $γ̇$");
+            contour.line = style;
+            contour.marker = render::Marker::diamond;
+            contour.open_marker = true;
+            contour.colour = colour;
+            if (!contour.x.empty()) result.series.push_back(std::move(contour));
+        }
+        return result;
+    }
+
+    void analyse(Context& context) const
+    {
+        const std::vector<Interval> all = intervals_of(curves_of(context, runs), memory);
         io::write_file(context.folder.file(context.step_name + ".csv"), csv_text(all));
         std::vector<Interval> falling, drawn;
         for (const Interval& i : all)
             if (i.onset) falling.push_back(i);
         std::copy_if(falling.begin(), falling.end(), std::back_inserter(drawn),
                      [](const Interval& i) { return i.is_drawn(); });
-        context.results["relaxation_strain"] = relaxation_strain;
+        context.results["memory"] = memory.json();
         context.results["least_stable"] = Json::array();
         for (const Interval& i : least_stable(falling))
             context.results["least_stable"].push_back(interval_json(i));
@@ -212,8 +229,23 @@ struct Stability {
         else if (drawn.empty())
             context.results["outcome"] = "no picture, all errors are larger than the values";
         if (drawn.empty()) return;
+        io::write_file(context.folder.file(context.step_name + "_map.csv"), map_text(falling));
         write_plot(context, context.step_name, critical_plot(drawn));
         write_plot(context, context.step_name + "_growth", growth_plot(least_stable(drawn)));
+        write_plot(context, context.step_name + "_map", map_plot(drawn));
+    }
+
+    void run(Context& context) const
+    {
+        Stability step = *this;
+        const auto measured = memory.measured(context);
+        if (!measured) {
+            context.results["outcome"] = "nothing to say, " + memory.response +
+                                         " did not resolve how the suspension remembers";
+            return;
+        }
+        step.memory = *measured;
+        step.analyse(context);
     }
 };
 

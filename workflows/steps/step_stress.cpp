@@ -81,6 +81,7 @@ struct StepStress {
             starts * (strain_after / series_interval + strain_before / interval_before);
         plan.needs.plotted_pixels = size.pixels();
         plan.endings = response_pictures();
+        plan.responses.push_back(plan.step_name);
     }
 
     ShearingTask task(const Model& of_all, double stress, double strain, double interval,

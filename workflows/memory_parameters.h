@@ -1,0 +1,29 @@
+// workflows/memory_parameters.h -- the memory of the microstructure as parameters of a step.
+#pragma once
+#include "engine/memory_kernel.h"
+#include "engine/stability.h"
+#include "workflows/step.h"
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <vector>
+
+namespace sigmaflow::workflows {
+
+struct MemoryParameters {
+    double relaxation_strain = 0.023, relaxation_strain_error = 0;
+    std::vector<double> relaxation_strains, relaxation_strain_errors, weights, weight_errors;
+    std::optional<double> instantaneous_viscosity;
+    std::string response;  // a step "step_stress" that measured all that
+
+    void describe(io::Fields& f);
+    void validate(const io::JsonNode& node, Plan& plan, const std::vector<PlannedRun>& runs) const;
+    /// Without `response`: its numbers. Nothing if that step did not resolve a memory.
+    std::optional<MemoryParameters> measured(const Context& context) const;
+    /// Weights add to 1.
+    MemoryKernel kernel() const;
+    MemoryFlow flow(Value viscosity, Value slope) const;
+    nlohmann::ordered_json json() const;
+};
+
+}
