@@ -95,6 +95,18 @@ Eigen::MatrixXd unit_shapes(const BandShapes& shapes, const Eigen::VectorXd& wei
     return (shapes.amplitudes * weights.asDiagonal()).rowwise().normalized();
 }
 
+/// The likelihood ratio of every column of deviations. One column at a time: a product of matrices
+/// would be divided among threads, which are worth nothing here.
+Eigen::VectorXd likelihood_ratios(const Eigen::MatrixXd& unit, const Eigen::MatrixXd& deviations)
+{
+    Eigen::VectorXd ratios(deviations.cols()), overlap(unit.rows());
+    for (Index r = 0; r < deviations.cols(); ++r) {
+        overlap.noalias() = unit * deviations.col(r);
+        ratios(r) = overlap.cwiseAbs2().maxCoeff();
+    }
+    return ratios;
+}
+
 }
 
 Amplitudes mode_amplitudes(const Field& field, int modes)
@@ -189,8 +201,7 @@ double steady_band_p_value(const Amplitudes& blocks, const BandShapes& shapes,
     const Eigen::VectorXd weights = deviation_weights(blocks);
     const Eigen::MatrixXd deviations =
         weights.asDiagonal() * shifted_means(blocks, shapes.slabs, shifts);
-    const Eigen::MatrixXd overlap = unit_shapes(shapes, weights) * deviations;
-    return rank_p_value(overlap.cwiseAbs2().colwise().maxCoeff().transpose());
+    return rank_p_value(likelihood_ratios(unit_shapes(shapes, weights), deviations));
 }
 
 SteadyBands search_steady_bands(const Amplitudes& blocks, const BandShapes& shapes,
@@ -207,15 +218,16 @@ SteadyBands search_steady_bands(const Amplitudes& blocks, const BandShapes& shap
         result.mode_p_value.push_back(
             rank_p_value(deviations.middleRows(2 * m, 2).colwise().squaredNorm().transpose()));
 
-    const Eigen::MatrixXd overlap = unit_shapes(shapes, weights) * deviations;
-    const Eigen::VectorXd ratio = overlap.cwiseAbs2().colwise().maxCoeff().transpose();
+    const Eigen::MatrixXd unit = unit_shapes(shapes, weights);
+    const Eigen::VectorXd ratio = likelihood_ratios(unit, deviations);
     result.likelihood_ratio = ratio(0);
     result.p_value = rank_p_value(ratio);
 
     Index best = 0;
-    overlap.col(0).cwiseAbs2().maxCoeff(&best);
+    const Eigen::VectorXd overlap = unit * deviations.col(0);
+    overlap.cwiseAbs2().maxCoeff(&best);
     const double length = (shapes.amplitudes.row(best) * weights.asDiagonal()).norm();
-    const double contrast = length > 0 ? overlap(best, 0) / length : 0;
+    const double contrast = length > 0 ? overlap(best) / length : 0;
     const auto s = static_cast<std::size_t>(best);
     const bool high = contrast > 0;
     result.contrast = std::abs(contrast);

@@ -114,10 +114,9 @@ UniformityTest test_uniformity(const Field& field, const UniformitySettings& set
     test.has_moving = test.moving.p_value <= settings.level / 2;
     test.smallest_steady = smallest_steady_contrast(blocks, shapes, settings);
     test.smallest_moving = smallest_moving_contrast(amplitudes, shapes.slabs, expected, settings);
-    if (test.has_steady || test.has_moving)
-        test.verdict = BandVerdict::bands;
-    else if (test.smallest_steady)
-        test.verdict = BandVerdict::uniform;
+    if (test.smallest_steady) test.at_rest = BandVerdict::uniform;
+    if (test.has_steady) test.at_rest = BandVerdict::bands;
+    test.verdict = test.has_moving ? BandVerdict::bands : test.at_rest;
     return test;
 }
 

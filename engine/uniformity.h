@@ -64,6 +64,10 @@ std::string_view verdict_name(BandVerdict verdict);
 
 struct UniformityTest {
     BandVerdict verdict = BandVerdict::undecided;
+    // Of bands at rest alone: moving ones are judged by a power law, which is known to be safe for
+    // the local shear rate only (band_search.h). The drag alone gives the stress of planes y =
+    // const strong fluctuations of mode 1.
+    BandVerdict at_rest = BandVerdict::undecided;
     int instants = 0, blocks = 0;  // measured and independent
     // none of the rest with fewer than `fewest_blocks` blocks
     SteadyBands steady;

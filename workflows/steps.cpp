@@ -9,7 +9,8 @@ std::span<const StepKind> step_kinds()
 {
     static const std::array kinds{pack_step(),       equilibrate_step(), shear_step(),
                                   flow_curve_step(), stability_step(),   velocity_profile_step(),
-                                  snapshot_step(),   plot_step()};
+                                  uniformity_step(), energy_step(),      snapshot_step(),
+                                  plot_step()};
     return kinds;
 }
 

@@ -14,6 +14,8 @@ StepKind shear_step();
 StepKind flow_curve_step();
 StepKind stability_step();
 StepKind velocity_profile_step();
+StepKind uniformity_step();
+StepKind energy_step();
 StepKind snapshot_step();
 StepKind plot_step();
 
