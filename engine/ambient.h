@@ -73,4 +73,11 @@ inline lubrication::PairLoad negative(const lubrication::PairLoad& load)
     return {-load.force_i, -load.torque_i, -load.force_j, -load.torque_j};
 }
 
+/// Load of a touching pair in the dashpot variant.
+inline lubrication::PairLoad dashpot_load(const State& s, const Evaluation& e, const PairState& p)
+{
+    const auto [vi, vj] = moving(s, e, p.pair);
+    return negative(lubrication::resistance_times(resistance(s, p), p.pair.normal, vi, vj));
+}
+
 }

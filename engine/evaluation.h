@@ -15,8 +15,8 @@
 // evaluate_in_detail: as in the paper, one factorisation, one solution per force, and every
 // component
 //   of the stress: rate = (sigma - S_fixed,xy)/S_unit,xy, S = rate S_unit + S_fixed.
-// Tested: both agree, S_xy equals the imposed stress, power balance, image and label invariance,
-// and 22 configurations with known answers.
+// Tested: both agree, S_xy equals the imposed stress, power balance (power_balance.h), image and
+// label invariance, and 22 configurations with known answers.
 #pragma once
 #include "engine/forces/contact.h"
 #include "engine/frame.h"
@@ -156,13 +156,6 @@ struct PairForces {
     Vec3 lubrication, dashpot, contact, repulsion;
 };
 std::vector<PairForces> pair_forces(const State& state, const Evaluation& evaluation);
-
-/// Exact balance of the mechanical power: input = sum of all other terms [eta0 rate0^2 a^3].
-struct PowerBalance {
-    double input = 0, solvent = 0, drag = 0, torque_residual = 0, lubrication = 0, dashpot = 0,
-           contact = 0, repulsion = 0;
-};
-PowerBalance power_balance(const State& state, const DetailedEvaluation& detailed);
 
 /// The stress as a sample has it: total, and the shear components by origin.
 struct StressSummary {

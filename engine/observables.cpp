@@ -1,5 +1,4 @@
-// What is derived from an evaluation for output: forces of pairs, power balance, samples and
-// frames.
+// What is derived from an evaluation for output: forces of pairs, samples and frames.
 #include "engine/ambient.h"
 #include "engine/evaluation.h"
 
@@ -9,51 +8,7 @@
 
 namespace sigmaflow {
 
-using lubrication::PairLoad;
-
 namespace {
-
-double power(const PairLoad& load, const PairVelocities& v)
-{
-    return load.force_i.dot(v.i.head<3>()) + load.torque_i.dot(v.i.tail<3>()) +
-           load.force_j.dot(v.j.head<3>()) + load.torque_j.dot(v.j.tail<3>());
-}
-
-// Torques use radii instead of lever arms, so a pair load has a small net torque in the ambient
-// spin.
-double spin_residual(const PairLoad& load, const Pair& pair, double rate)
-{
-    const Vec3 net = load.torque_i + load.torque_j - pair.separation.cross(load.force_i);
-    return -0.5 * rate * net.z();
-}
-
-PairLoad dashpot_load(const State& s, const Evaluation& e, const PairState& p)
-{
-    const auto [vi, vj] = moving(s, e, p.pair);
-    return negative(lubrication::resistance_times(resistance(s, p), p.pair.normal, vi, vj));
-}
-
-void add_pair_power(const State& s, const Evaluation& e, const PairState& p, PowerBalance& balance)
-{
-    const PairVelocities total = moving(s, e, p.pair);
-    const Vec3 force = -p.repulsion * p.pair.normal;
-    const PairLoad repulsive{force, Vec3::Zero(), -force, Vec3::Zero()};
-    balance.repulsion -= power(repulsive, total);
-    balance.torque_residual += spin_residual(repulsive, p.pair, e.shear_rate);
-    if (p.dashpot) {
-        const PairLoad load = dashpot_load(s, e, p);
-        balance.dashpot -= power(load, total);
-        balance.torque_residual += spin_residual(load, p.pair, e.shear_rate);
-        return;
-    }
-    const PairVelocities v{e.nonaffine[p.pair.i], e.nonaffine[p.pair.j]};
-    const Mat3 E = e.shear_rate * unit_strain_rate();
-    const auto r = resistance(s, p);
-    const auto stresslet = lubrication::strain_stresslet(r, p.pair.normal, E);
-    balance.lubrication += power(lubrication::resistance_times(r, p.pair.normal, v.i, v.j), v) -
-                           2 * power(lubrication::strain_load(r, p.pair.normal, E), v) +
-                           (stresslet.on_i + stresslet.on_j).cwiseProduct(E).sum();
-}
 
 double nonaffine_speed(const Evaluation& e, int i)
 {
@@ -80,25 +35,6 @@ std::vector<PairForces> pair_forces(const State& state, const Evaluation& e)
         forces.push_back(f);
     }
     return forces;
-}
-
-PowerBalance power_balance(const State& state, const DetailedEvaluation& d)
-{
-    const Evaluation& e = d.evaluation;
-    PowerBalance balance;
-    const double volume = state.box.volume();
-    balance.input = volume * e.shear_rate * d.total_stress()(flow, gradient);
-    balance.solvent = volume * e.shear_rate * d.stress[solvent](flow, gradient);
-    for (int i = 0; i < state.size(); ++i)
-        balance.drag += drag(state, e.model, i).dot(e.nonaffine[i].cwiseAbs2());
-    for (const PairState& p : e.pairs) add_pair_power(state, e, p, balance);
-    for (const ContactLoad& c : e.contacts) {
-        const Pair& pair = c.pair;
-        const PairLoad load{c.force_on_i, c.torque_on_i, -c.force_on_i, c.torque_on_j};
-        balance.contact -= power(load, moving(state, e, pair));
-        balance.torque_residual += spin_residual(load, pair, e.shear_rate);
-    }
-    return balance;
 }
 
 std::span<const SampleField> sample_fields()

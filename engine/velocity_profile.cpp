@@ -1,7 +1,7 @@
 #include "engine/velocity_profile.h"
 
 #include "engine/error.h"
-#include "engine/units.h"
+#include "engine/slabs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,19 +12,6 @@ namespace sigmaflow {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// Volume of a sphere below the height s over its centre.
-double volume_below(double radius, double s)
-{
-    s = std::clamp(s, -radius, radius);
-    return pi * (radius * radius * s - s * s * s / 3 + 2 * radius * radius * radius / 3);
-}
-
-int folded(double slab, int bins)
-{
-    const double k = slab - bins * std::floor(slab / bins);
-    return std::min(static_cast<int>(k), bins - 1);
-}
 
 struct MeanAndError {
     double mean = nan, error = nan;
@@ -113,16 +100,12 @@ VelocityProfile velocity_profile(const State& state, const std::vector<Vec3>& ve
     for (std::size_t i = 0; i < state.radius.size(); ++i) {
         const double y = state.position[i].y(), radius = state.radius[i];
         const double nonaffine = velocity[i].x() - shear_rate * y;
-        const double lowest = std::floor((y - radius) / thickness);
-        const double highest = std::floor((y + radius) / thickness);
-        for (double slab = lowest; slab <= highest; ++slab) {
-            const double weight = volume_below(radius, (slab + 1) * thickness - y) -
-                                  volume_below(radius, slab * thickness - y);
-            const auto k = static_cast<std::size_t>(folded(slab, bins));
+        for_each_slab(y, radius, height, bins, [&](int slab, double weight) {
+            const auto k = static_cast<std::size_t>(slab);
             volume[k] += weight;
             flux[k] += weight * nonaffine;
-        }
-        ++profile.count[static_cast<std::size_t>(folded(std::floor(y / thickness), bins))];
+        });
+        ++profile.count[static_cast<std::size_t>(folded_slab(std::floor(y / thickness), bins))];
     }
 
     for (int k = 0; k < bins; ++k) {

@@ -4,6 +4,7 @@
 #include "engine/error.h"
 #include "engine/lubrication/pair_resistance.h"
 #include "engine/pairs.h"
+#include "engine/power_balance.h"
 #include "engine/step.h"
 #include "io/atomic_file.h"
 #include "io/model_fields.h"

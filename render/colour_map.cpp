@@ -19,6 +19,9 @@ const std::vector<Colour> viridis{{68, 1, 84},    {71, 45, 123},  {59, 82, 139},
                                   {93, 200, 99},  {170, 220, 50}, {253, 231, 37}};
 const std::vector<Colour> paper{
     {52, 52, 54}, {100, 96, 70}, {160, 146, 58}, {216, 194, 46}, {255, 236, 40}};
+const std::vector<Colour> blue_red{{30, 56, 118},   {58, 110, 176},  {138, 180, 214},
+                                   {236, 236, 234}, {232, 162, 132}, {192, 88, 66},
+                                   {118, 20, 36}};
 constexpr double darkest_inferno = 0.13;
 
 /// A smooth curve through the knots (Catmull & Rom), held inside 0..255.
@@ -46,14 +49,15 @@ Colour interpolate(const std::vector<Colour>& knots, double share)
 
 Colour map_colour(const std::string& map, double share)
 {
-    const bool known = map == "inferno" || map == "viridis" || map == "paper";
+    const bool known = map == "inferno" || map == "viridis" || map == "paper" || map == "blue_red";
     if (!known)
         throw Error(ErrorKind::input, "colour_map",
-                    "must be inferno, viridis or paper, got \"" + map + "\"");
+                    "must be inferno, viridis, paper or blue_red, got \"" + map + "\"");
     if (std::isnan(share)) return {150, 150, 150};
     share = std::clamp(share, 0.0, 1.0);
     if (map == "viridis") return interpolate(viridis, share);
     if (map == "paper") return interpolate(paper, share);
+    if (map == "blue_red") return interpolate(blue_red, share);
     return interpolate(inferno, darkest_inferno + (1 - darkest_inferno) * share);
 }
 

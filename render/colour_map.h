@@ -3,6 +3,7 @@
 //   inferno, viridis   perceptually uniform maps of matplotlib (N. J. Smith, S. van der Walt, CC0);
 //                      inferno begins where spheres are bright enough to show their shading
 //   paper              dark grey to yellow, as in Mari et al., Phys. Rev. E 91, 052302, Fig. 3
+//   blue_red           for what lies on both sides of a middle value: lightest in the middle
 #pragma once
 #include "render/image.h"
 

@@ -6,6 +6,9 @@
 #include "render/fonts.h"
 #include "render/plot_parts.h"
 
+#include <algorithm>
+#include <functional>
+
 namespace sigmaflow::render {
 namespace {
 
@@ -16,6 +19,22 @@ void check_lengths(const std::string& where, std::size_t expected,
     throw Error(ErrorKind::input, where,
                 std::string(name) + " has " + std::to_string(values.size()) + " values, x has " +
                     std::to_string(expected));
+}
+
+void check_grid(const ColourGrid& grid)
+{
+    const auto refuse = [](const std::string& problem) {
+        throw Error(ErrorKind::input, "grid", problem);
+    };
+    for (const auto* edges : {&grid.x, &grid.y})
+        if (edges->size() < 2 || std::adjacent_find(edges->begin(), edges->end(),
+                                                    std::greater_equal<>()) != edges->end())
+            refuse("needs two edges or more, ascending");
+    const std::size_t cells = (grid.x.size() - 1) * (grid.y.size() - 1);
+    if (grid.values.size() != cells)
+        refuse("has " + std::to_string(grid.values.size()) + " values, its edges make " +
+               std::to_string(cells) + " cells");
+    if (!(grid.minimum < grid.maximum)) refuse("has an empty range of colours");
 }
 
 void check(const Plot& plot)
@@ -38,6 +57,7 @@ void check(const Plot& plot)
         check_lengths(where, band.x.size(), band.lower, "lower", false);
         check_lengths(where, band.x.size(), band.upper, "upper", false);
     }
+    if (plot.grid) check_grid(*plot.grid);
 }
 
 Drawing draw_plot(const Plot& plot)
@@ -46,6 +66,7 @@ Drawing draw_plot(const Plot& plot)
     const Fonts fonts;
     const PlotLayout layout = plot_layout(plot, fonts);
     Drawing drawing{plot.width, plot.height, {}};
+    draw_grid(drawing, plot, layout, fonts);
     draw_spans(drawing, plot, layout);
     draw_bands(drawing, plot, layout);
     draw_series(drawing, plot, layout);

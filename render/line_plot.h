@@ -1,8 +1,9 @@
-// render/line_plot.h -- plots for a paper: lines, markers, error bars, bands, reference lines.
+// render/line_plot.h -- plots for a paper: lines, markers, error bars, bands, reference lines, and
+// fields of two variables as coloured cells with a colour bar.
 //
 // Texts are rich: $italic$ letters, _{subscript}, ^{superscript}, any Unicode (DejaVu fonts).
 // No graphics driver is needed. Errors: rendering (a font is missing), input (series of unequal
-// length, bad range).
+// length, bad range, cells that do not fit their edges).
 #pragma once
 #include "render/image.h"
 
@@ -39,6 +40,14 @@ struct Span {
     std::string label;
 };
 
+/// Cells between edges, coloured by their values; below all lines, with a bar on the right.
+struct ColourGrid {
+    std::vector<double> x, y;    // edges of the cells, ascending; at least 2 each
+    std::vector<double> values;  // (x.size() - 1) (y.size() - 1), row by row along x; NaN: grey
+    std::string map = "viridis", label;
+    double minimum = 0, maximum = 1;  // of the colours; values outside have the end colours
+};
+
 struct PlotAxis {
     std::string title;
     std::optional<double> minimum, maximum;  // default: from the data with a margin
@@ -54,6 +63,7 @@ struct Plot {
     std::vector<Series> series;
     std::vector<Band> bands;
     std::vector<Span> spans;
+    std::optional<ColourGrid> grid;
     Legend legend = Legend::best;
 };
 

@@ -58,6 +58,7 @@ Range x_extremes(const Plot& plot)
         extremes.add(span.from);
         extremes.add(span.to);
     }
+    if (plot.grid) extremes.add(plot.grid->x, {});
     // Lines may begin and end on the frame, markers not.
     const bool markers = std::any_of(plot.series.begin(), plot.series.end(), [](const Series& s) {
         return s.marker != Marker::none && !s.x.empty();
@@ -74,9 +75,15 @@ Range y_extremes(const Plot& plot)
         extremes.add(band.lower, {});
         extremes.add(band.upper, {});
     }
+    if (plot.grid) {
+        extremes.add(plot.grid->y, {});
+        return extremes.range(0, 0);
+    }
     // Labels of spans stand at the top of the frame, above the data.
     return extremes.range(0.04, plot.spans.empty() ? 0.04 : 0.12);
 }
+
+constexpr double bar_room = 190;  // right of the frame, for the colour bar of a grid
 
 Range axis_range(const PlotAxis& axis, Range data, const std::string& where)
 {
@@ -130,7 +137,9 @@ PlotLayout plot_layout(const Plot& plot, const Fonts& fonts)
     const auto x_ticks = layout.x.ticks();
     double left = 24 * unit + 16 * unit + widest_label(layout.y.ticks(), fonts) * tick_font;
     if (!plot.y.title.empty()) left += 1.45 * layout.title_font();
+    const double beside_bar = plot.grid ? bar_room * unit : 0;
     const double right =
+        beside_bar +
         std::max(30 * unit, 12 * unit + 0.5 * tick_font * text_width(fonts, x_ticks.back().label));
     const double top = plot.title.empty() ? 34 * unit : 34 * unit + 1.4 * layout.title_font();
     double bottom = 24 * unit + 1.35 * tick_font;
@@ -142,6 +151,9 @@ PlotLayout plot_layout(const Plot& plot, const Fonts& fonts)
         throw Error(ErrorKind::input, "plot",
                     "a picture of " + std::to_string(plot.width) + " x " +
                         std::to_string(plot.height) + " pixels has no room beside its labels");
+    const double bar_left = std::round(layout.frame.right + 40 * unit);
+    layout.colour_bar = {bar_left, layout.frame.top + std::round(86 * unit),
+                         bar_left + std::round(36 * unit), layout.frame.bottom};
     layout.x.first_pixel = layout.frame.left;
     layout.x.last_pixel = layout.frame.right;
     layout.y.first_pixel = layout.frame.bottom;

@@ -27,6 +27,7 @@ struct Scale {
 struct PlotLayout {
     double unit = 1;
     Rectangle frame;
+    Rectangle colour_bar;  // of a grid
     Scale x, y;
 
     double tick_font() const { return 32 * unit; }
@@ -36,6 +37,7 @@ struct PlotLayout {
 
 PlotLayout plot_layout(const Plot& plot, const Fonts& fonts);
 
+void draw_grid(Drawing& drawing, const Plot& plot, const PlotLayout& layout, const Fonts& fonts);
 void draw_spans(Drawing& drawing, const Plot& plot, const PlotLayout& layout);
 void draw_bands(Drawing& drawing, const Plot& plot, const PlotLayout& layout);
 void draw_series(Drawing& drawing, const Plot& plot, const PlotLayout& layout);

@@ -24,6 +24,8 @@ std::span<const StepKind> step_kinds()
                                   structure_step(),
                                   nonaffine_step(),
                                   one_dimensional_flow_step(),
+                                  uniformity_step(),
+                                  energy_step(),
                                   velocity_profile_step(),
                                   snapshot_step(),
                                   plot_step(),

@@ -26,6 +26,8 @@ StepKind velocity_profile_step();
 StepKind contacts_step();
 StepKind structure_step();
 StepKind nonaffine_step();
+StepKind uniformity_step();
+StepKind energy_step();
 StepKind snapshot_step();
 StepKind plot_step();
 StepKind panels_step();

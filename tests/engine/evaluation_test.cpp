@@ -1,6 +1,7 @@
 #include "engine/evaluation.h"
 
 #include "engine/error.h"
+#include "engine/power_balance.h"
 #include "engine/step.h"
 #include "engine/workspace.h"
 #include "tests/support/random_state.h"

@@ -52,6 +52,18 @@ TEST(ColourMap, GetsLighterFromEndToEnd)  // what makes an order readable, also 
     }
 }
 
+TEST(ColourMap, OfTwoSidesIsLightestInTheMiddleAndAsDarkOnBothSides)
+{
+    for (int i = 0; i < 20; ++i) {
+        const double here = lightness(map_colour("blue_red", i / 40.0));
+        EXPECT_LT(here, lightness(map_colour("blue_red", (i + 1) / 40.0))) << i;
+        EXPECT_NEAR(here, lightness(map_colour("blue_red", 1 - i / 40.0)), 6) << i;
+    }
+    const Colour low = map_colour("blue_red", 0), high = map_colour("blue_red", 1);
+    EXPECT_GT(low[2], low[0]);
+    EXPECT_GT(high[0], high[2]);
+}
+
 TEST(ColourMap, BeginsBrightEnoughForShading)
 {
     EXPECT_GT(lightness(map_colour("inferno", 0)), 8);

@@ -2,6 +2,7 @@
 #include "render/line_plot.h"
 
 #include "engine/error.h"
+#include "render/colour_map.h"
 #include "tests/render/scenes.h"
 #include "tests/render/svg_reader.h"
 #include "tests/support/image_compare.h"
@@ -206,6 +207,62 @@ TEST(LinePlot, ThePictureHasTheColoursOfTheSeries)
     EXPECT_EQ(int(pixel[2]), 30);
 }
 
+namespace {
+
+/// Three columns and two rows between 0 and 3, 0 and 1.
+Plot grid_plot(std::vector<double> values)
+{
+    Plot plot;
+    plot.width = 800;
+    plot.height = 600;
+    plot.x.title = "x";
+    plot.grid =
+        render::ColourGrid{{0, 1, 2, 3}, {0, 0.5, 1}, std::move(values), "viridis", "label", 0, 1};
+    return plot;
+}
+
+}
+
+TEST(LinePlot, CellsHaveTheColoursOfTheirValues)
+{
+    Plot plot = grid_plot({0, 0.5, 1, std::nan(""), 7, -7});
+    plot.series.push_back(line({0.5, 1.5, 2.5}, {0.25, 0.25, 0.25}));  // where the lower cells are
+    plot.series.push_back(line({0.5, 1.5, 2.5}, {0.75, 0.75, 0.75}));
+    const auto lines = drawn(plot).clipped_polylines();
+    ASSERT_EQ(lines.size(), 2u);
+    plot.series.clear();
+    const render::Image image = render::render_plot(plot);
+    const double shares[] = {0, 0.5, 1, std::nan(""), 1, 0};
+    for (std::size_t cell = 0; cell < 6; ++cell) {
+        const render::Point p = lines[cell / 3].points[cell % 3];
+        const auto* pixel = image.pixel(static_cast<int>(p.x), static_cast<int>(p.y));
+        const render::Colour expected = render::map_colour("viridis", shares[cell]);
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(int(pixel[c]), expected[c]) << cell;
+    }
+}
+
+TEST(LinePlot, CellsFillTheFrameAndTheBarStandsBesideIt)
+{
+    const SvgFile file = drawn(grid_plot({0, 0.5, 1, 0, 0.5, 7}));
+    ASSERT_TRUE(file.well_formed);
+    render::Rectangle frame{};
+    for (const auto& element : file.polylines)
+        if (element.points.size() == 6) frame = element.bounds();
+    EXPECT_GT(file.text("label")->bounds().left, frame.right);
+    EXPECT_LT(file.text("label")->bounds().right, 800);
+    EXPECT_NE(file.text("≥ 1"), nullptr);  // some value lies above the colours
+    EXPECT_EQ(file.text("≤ 0"), nullptr);
+    EXPECT_NE(file.text("3"), nullptr);  // the axes begin and end with the cells
+}
+
+TEST(LinePlot, EqualNeighbouringCellsAreOneShape)
+{
+    const auto areas = [](std::vector<double> values) {
+        return drawn(grid_plot(std::move(values))).areas.size();
+    };
+    EXPECT_EQ(areas({0, 1, 0, 1, 0, 1}) - areas({0, 0, 0, 1, 1, 1}), 4u);
+}
+
 TEST(LinePlot, IsDrawnWithoutAnyData)
 {
     Plot plot;
@@ -236,6 +293,13 @@ TEST(LinePlot, RefusesWrongInput)
     EXPECT_EQ(error_kind(plot), ErrorKind::input);
     plot = plot_of({line({0, 1}, {0, 1})});
     plot.width = 1;
+    EXPECT_EQ(error_kind(plot), ErrorKind::input);
+    EXPECT_EQ(error_kind(grid_plot({1, 2, 3})), ErrorKind::input);
+    plot = grid_plot(std::vector<double>(6));
+    plot.grid->x = {0, 2, 1, 3};
+    EXPECT_EQ(error_kind(plot), ErrorKind::input);
+    plot = grid_plot(std::vector<double>(6));
+    plot.grid->maximum = 0;
     EXPECT_EQ(error_kind(plot), ErrorKind::input);
 }
 
