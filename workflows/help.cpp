@@ -54,7 +54,7 @@ std::string all_steps()
     std::string text = "steps of a workflow (sigmaflow steps STEP explains one):\n";
     for (const StepKind& kind : step_kinds()) {
         std::string name(kind.name);
-        name.resize(std::max<std::size_t>(name.size(), 18), ' ');
+        name.resize(std::max<std::size_t>(name.size() + 2, 22), ' ');
         text += "  " + name + std::string(kind.summary) + "\n";
     }
     Suspension suspension;

@@ -28,10 +28,11 @@ std::string path_of(const std::string& name)
     return std::string(SIGMAFLOW_WORKFLOWS "/paper/") + name + ".json";
 }
 
-bool has_only_finite_numbers(const Json& json)
+/// A table of numbers must not say otherwise.
+bool has_only_finite_numbers(const std::string& table)
 {
-    if (json.is_structured()) return std::all_of(json.begin(), json.end(), has_only_finite_numbers);
-    return !json.is_null();  // what NaN is written as
+    return table.find(",nan") == std::string::npos && table.find(",-nan") == std::string::npos &&
+           table.find(",inf") == std::string::npos && table.find(",-inf") == std::string::npos;
 }
 
 class Figure : public Program, public testing::WithParamInterface<std::string> {};
@@ -50,13 +51,16 @@ TEST_P(SmallFigure, IsMadeByOneCommand)
     const Said said = run("run -q '" + path_of(GetParam()) + "'");
     ASSERT_EQ(said.exit_code, 0) << said.err;
     const fs::path out = folder / "out" / GetParam();
-    const Json summary = Json::parse(text_of(out / "summary.json"));
-    EXPECT_TRUE(has_only_finite_numbers(summary)) << summary.dump(1);
+    EXPECT_TRUE(Json::accept(text_of(out / "summary.json")));
     const Json manifest = Json::parse(text_of(out / "manifest.json"));
     EXPECT_EQ(manifest["status"], "complete");
     std::size_t pictures = 0;
-    for (const auto& entry : fs::directory_iterator(out))
+    for (const auto& entry : fs::directory_iterator(out)) {
         pictures += entry.path().extension() == ".png";
+        if (entry.path().extension() == ".csv") {
+            EXPECT_TRUE(has_only_finite_numbers(text_of(entry.path()))) << entry.path();
+        }
+    }
     EXPECT_GT(pictures, 0u);
 }
 
