@@ -290,14 +290,4 @@ std::optional<double> reynolds_of_growth(const MemoryFlow& flow, double growth)
     return (low + high) / 2;
 }
 
-double reynolds_number(double shear_rate, double viscosity, double gap)
-{
-    return shear_rate * gap * gap / viscosity;
-}
-
-double gap_of(double reynolds, double shear_rate, double viscosity)
-{
-    return std::sqrt(reynolds * viscosity / shear_rate);
-}
-
 }

@@ -27,7 +27,7 @@
 // most. For B_i >= 0 there is one onset if b < 0 and none if b >= 0, because Re C then lies between
 // b and h. With one exponential and w_0 = 0 all this is the paper's: x^2 + x (D + c b) + c D = 0.
 //
-// At an imposed mean rate there is also k = 0, D = 0: C(x) = 0 has a positive root if b < 0, -b c
+// At an imposed mean rate there is also k = 0, D = 0: C(x) = 0 has a positive root if b < 0, -b c/h
 // for one exponential. Uniform flow then leaves the falling branch whatever Re is; the onset above
 // holds for an imposed stress.
 //
@@ -38,6 +38,7 @@
 #include "engine/value.h"
 
 #include <array>
+#include <cmath>
 #include <complex>
 #include <optional>
 #include <vector>
@@ -105,7 +106,13 @@ std::optional<Onset> onset_of_instability(const MemoryFlow& flow);
 std::optional<double> reynolds_of_growth(const MemoryFlow& flow, double growth);
 
 /// Re = rho rate H^2/eta of a gap H [sqrt(eta0/(rho rate0))], and the gap of a Reynolds number.
-double reynolds_number(double shear_rate, double viscosity, double gap);
-double gap_of(double reynolds, double shear_rate, double viscosity);
+inline double reynolds_number(double shear_rate, double viscosity, double gap)
+{
+    return shear_rate * gap * gap / viscosity;
+}
+inline double gap_of(double reynolds, double shear_rate, double viscosity)
+{
+    return std::sqrt(reynolds * viscosity / shear_rate);
+}
 
 }
