@@ -126,7 +126,7 @@ TEST_P(PowerOf, SpringsAndRepulsionGainWhatIsStored)
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, PowerOf, testing::ValuesIn(variants()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& variant) { return std::string(variant.param.name); });
 
 // Two spheres pressed together, one moves along their common tangent plane at 0.1 a rate0.
 TEST(ContactPower, OfABlockThatSlidesIsFrictionTimesSpeed)

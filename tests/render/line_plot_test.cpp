@@ -250,9 +250,9 @@ TEST(LinePlot, CellsFillTheFrameAndTheBarStandsBesideIt)
         if (element.points.size() == 6) frame = element.bounds();
     EXPECT_GT(file.text("label")->bounds().left, frame.right);
     EXPECT_LT(file.text("label")->bounds().right, 800);
-    EXPECT_NE(file.text("≥ 1"), nullptr);  // some value lies above the colours
-    EXPECT_EQ(file.text("≤ 0"), nullptr);
-    EXPECT_NE(file.text("3"), nullptr);  // the axes begin and end with the cells
+    EXPECT_NE(file.text("≥ 1.0"), nullptr);  // some value lies above the colours
+    EXPECT_EQ(file.text("≤ 0.0"), nullptr);
+    EXPECT_NE(file.text("3.0"), nullptr);  // the axes begin and end with the cells
 }
 
 TEST(LinePlot, EqualNeighbouringCellsAreOneShape)

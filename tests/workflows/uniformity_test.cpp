@@ -123,14 +123,14 @@ TEST_F(FlowChecks, ShortAndJammedRunsAreSaidToBeUndecided)
     write("short.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.4},
         "steps": [{"step": "pack"},
                   {"step": "shear", "stress": 2, "strain": 0.1, "frame_interval": 0.1},
-                  {"step": "uniformity", "from_strain": 0, "width": 640, "height": 360},
+                  {"step": "uniformity", "from_strain": 0, "spacing": 0.1, "width": 640, "height": 360},
                   {"step": "uniformity", "name": "late", "from_strain": 0.1}]})");
     Said said = run("run short.json -q");
     ASSERT_EQ(said.exit_code, 0) << said.err;
     EXPECT_EQ(steps("short")["uniformity"]["outcome"],
               "undecided: too few frames, 2 independent of 2");
     EXPECT_TRUE(steps("short")["late"]["outcome"].get<std::string>().starts_with("undecided"));
-    write("jams.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.62},
+    write("jams.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.61},
         "steps": [{"step": "pack"},
                   {"step": "shear", "stress": 20, "strain": 1, "frame_interval": 0.02},
                   {"step": "uniformity"}, {"step": "energy"}]})");
@@ -149,7 +149,7 @@ TEST_F(FlowChecks, WrongParametersAreRefusedBeforeAnythingIsComputed)
                   {"step": "uniformity", "from_strain": 3}]})");
     const Said late = run("run wrong.json");
     EXPECT_EQ(late.exit_code, 65);
-    EXPECT_NE(late.err.find("wrong.json:4:50: /steps/2/from_strain: must be <= 0.1"),
+    EXPECT_NE(late.err.find("wrong.json:4:57: /steps/2/from_strain: must be <= 0.1"),
               std::string::npos)
         << late.err;
     write("none.json", R"({"suspension": {"particles": 50, "volume_fraction": 0.4},

@@ -109,7 +109,7 @@ struct UniformityStep {
           "strain between two frames that are used");
         f("from_strain", from_strain, io::between(0, 1e4), "-",
           "strain of the first frame; default: where the start-up ends");
-        f("level", level, io::between(1e-3, 0.5), "-",
+        f("level", level, io::between(0.005, 0.5), "-",
           "probability of calling uniform flow banded");
         f("seed", seed, io::Integers{0, 1000000000}, "-", "of the random shifts");
         size.describe(f);
