@@ -38,20 +38,19 @@ void MemoryParameters::describe(io::Fields& f)
       "name of a step \"step_stress\" before this one that measured all of that");
 }
 
-void MemoryParameters::validate(const io::JsonNode& node, Plan& plan,
-                                const std::vector<PlannedRun>& runs) const
+void MemoryParameters::validate(const io::JsonNode& node, const Plan& plan) const
 {
     if (!response.empty()) {
         if (plan.responses.empty())
             throw node.error_at_key("response", "needs a step \"step_stress\" before this one");
         const std::vector<std::string_view> known(plan.responses.begin(), plan.responses.end());
         node.member("response").word(known);
-        for (const char* other :
-             {"relaxation_strain", "relaxation_strains", "weights", "instantaneous_viscosity"})
-            if (node.has(other))
-                throw node.error_at_key(other, "the response says what the memory is");
-        for (const PlannedRun& run : runs) plan.uses.push_back(run.name);
-        plan.uses.push_back(response);
+        const bool other_numbers = !relaxation_strains.empty() || !weights.empty() ||
+                                   instantaneous_viscosity ||
+                                   relaxation_strain != MemoryParameters().relaxation_strain;
+        if (other_numbers)
+            throw node.error_at_key("response",
+                                    "says what the memory is: give no other numbers for it");
     }
     const auto need = [&](const char* name, const std::vector<double>& list) {
         if (!list.empty() && list.size() != relaxation_strains.size())
@@ -63,6 +62,13 @@ void MemoryParameters::validate(const io::JsonNode& node, Plan& plan,
     need("weight_errors", weight_errors);
     if (!weights.empty() && !(sum(weights) > 0))
         throw node.member("weights").wrong("must have a number > 0");
+}
+
+void MemoryParameters::use(Plan& plan, const std::vector<PlannedRun>& runs) const
+{
+    if (response.empty()) return;  // the state of the suspension stands for the runs
+    for (const PlannedRun& run : runs) plan.uses.push_back(run.name);
+    plan.uses.push_back(response);
 }
 
 std::optional<MemoryParameters> MemoryParameters::measured(const Context& context) const

@@ -17,7 +17,9 @@ struct MemoryParameters {
     std::string response;  // a step "step_stress" that measured all that
 
     void describe(io::Fields& f);
-    void validate(const io::JsonNode& node, Plan& plan, const std::vector<PlannedRun>& runs) const;
+    void validate(const io::JsonNode& node, const Plan& plan) const;
+    /// The step depends on these runs, and on the response.
+    void use(Plan& plan, const std::vector<PlannedRun>& runs) const;
     /// Without `response`: its numbers. Nothing if that step did not resolve a memory.
     std::optional<MemoryParameters> measured(const Context& context) const;
     /// Weights add to 1.

@@ -87,8 +87,9 @@ struct OneDimensionalFlow {
 
     void validate(const io::JsonNode& node, Plan& plan)
     {
+        memory.validate(node, plan);
         runs = runs_for_curves(node, plan);
-        memory.validate(node, plan, runs);
+        memory.use(plan, runs);
         if (volume_fraction && std::none_of(runs.begin(), runs.end(), [&](const PlannedRun& run) {
                 return run.volume_fraction == *volume_fraction &&
                        std::holds_alternative<ImposedStress>(run.control);

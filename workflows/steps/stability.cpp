@@ -96,8 +96,9 @@ struct Stability {
 
     void validate(const io::JsonNode& node, Plan& plan)
     {
+        memory.validate(node, plan);
         runs = runs_for_curves(node, plan);
-        memory.validate(node, plan, runs);
+        memory.use(plan, runs);
         plan.needs.plotted_pixels = size.pixels();
     }
 
