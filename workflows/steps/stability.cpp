@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace sigmaflow::workflows {
 
@@ -183,14 +184,17 @@ struct Stability {
             return series;
         };
         const std::vector<Interval> worst = least_stable(drawn);
+        double lowest = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < worst.size(); ++k) {
             render::Series border =
                 line(worst[k].volume_fraction, 0,
                      "$ϕ$ = " + short_number(worst[k].volume_fraction) + ", border");
             border.marker = render::Marker::circle;
             border.colour = render::cycle_colour(k);
+            for (double gap : border.y) lowest = std::min(lowest, gap);
             result.series.push_back(std::move(border));
         }
+        result.y.minimum = lowest / 4;  // room for the legend
         const auto least =
             std::min_element(worst.begin(), worst.end(), [](const Interval& a, const Interval& b) {
                 return a.onset->reynolds.mean < b.onset->reynolds.mean;
