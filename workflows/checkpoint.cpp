@@ -138,11 +138,11 @@ void Keeper::keep(double strain, std::vector<FileMark> files, std::string run)
                         ", the same command goes on from there");
 }
 
-void Keeper::stop_if_asked() const
+void Keeper::stop_if_asked(const std::string& next) const
 {
     if (const auto reason = interruption_.asked())
         throw Error(ErrorKind::interrupted, step_.name,
-                    *reason + "; the same command begins this step anew");
+                    *reason + "; the same command " + next);
 }
 
 }

@@ -85,8 +85,9 @@ public:
     bool due() const;
     /// Stores the step; Error(interrupted) afterwards if the run was asked to stop.
     void keep(double strain, std::vector<FileMark> files, std::string run);
-    /// For steps that store nothing. Error(interrupted) if the run was asked to stop.
-    void stop_if_asked() const;
+    /// For steps without checkpoints. Error(interrupted) if the run was asked to stop; it says what
+    /// the same command will do.
+    void stop_if_asked(const std::string& next = "begins this step anew") const;
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -113,10 +113,10 @@ void compute_side_by_side(Context& context, int count,
     for (int i = working; i > 0; --i) threads.emplace_back(labour);
     try {
         while (working > 0) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));  // stored parts are read
             context.progress.update(static_cast<double>(done) / count,
                                     std::to_string(done) + " of " + std::to_string(count));
-            context.keeper.stop_if_asked();
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            context.keeper.stop_if_asked("goes on with the parts that are missing");
         }
     } catch (...) {
         stop = true;
