@@ -522,11 +522,77 @@ std::vector<Mistake> mistakes_of_sweeps()
     };
 }
 
+std::vector<Mistake> mistakes_of_ensembles()
+{
+    return {
+        {"a_step_that_is_none",
+         step("{\"step\": \"step_stress\", @\"stress_after\": 2}"),
+         "/steps/1/stress_after",
+         {"must differ from stress_before"}},
+        {"a_step_with_too_few_samples",
+         step("{\"step\": \"step_stress\", \"strain_after\": 0.1, @\"series_interval\": 0.05}"),
+         "/steps/1/series_interval",
+         {"must give 10 to 1e5 samples"}},
+        {"an_ensemble_of_one",
+         step("{\"step\": \"step_stress\", \"starts\": @1}"),
+         "/steps/1/starts",
+         {"must be"}},
+        {"an_implicit_ensemble_of_dashpots",
+         step("@{\"step\": \"step_stress\", \"model\": {\"contact_hydrodynamics\": \"dashpot\"}}"),
+         "/steps/1/scheme",
+         {"needs contact_hydrodynamics"}},
+        {"jamming_stresses_the_wrong_way",
+         step("{\"step\": \"jamming\", \"lowest_stress\": 3, @\"highest_stress\": 2}"),
+         "/steps/1/highest_stress",
+         {"must be > lowest_stress, 3"}},
+        {"jamming_in_two_words",
+         step("{\"step\": \"jamming\", \"volume_fraction\": 0.5, \"volume_fractions\": @[0.5]}"),
+         "/steps/1/volume_fractions",
+         {"exclude each other"}},
+        {"jamming_of_what_cannot_be_packed",
+         step("{\"step\": \"jamming\", \"volume_fractions\": [0.5, @0.7]}"),
+         "/steps/1/volume_fractions/1",
+         {"random close packing"}},
+        {"an_adaptive_curve_of_fewer_points_than_it_begins_with",
+         step("{\"step\": \"adaptive_flow_curve\", \"points\": 9, @\"most_points\": 8}"),
+         "/steps/1/most_points",
+         {"must be >= points, 9"}},
+        {"an_adaptive_curve_that_may_not_begin",
+         step("{\"step\": \"adaptive_flow_curve\", \"strain\": 3, @\"maximum_strain\": 1}"),
+         "/steps/1/maximum_strain",
+         {"must be >= strain, 3"}},
+        {"a_comparison_without_runs",
+         step("@{\"step\": \"compare\"}"),
+         "/steps/1",
+         {"needs two steps"}},
+        {"fluctuations_without_runs",
+         step("@{\"step\": \"fluctuations\"}"),
+         "/steps/1",
+         {"needs a run"}},
+        {"statistics_without_runs",
+         step("@{\"step\": \"statistics\"}"),
+         "/steps/1",
+         {"needs a run"}},
+        {"a_response_that_was_not_measured",
+         step("{\"step\": \"stability\", @\"response\": \"none\"}"),
+         "/steps/1/response",
+         {"needs a step"}},
+        {"too_many_particles_for_a_pack",
+         step("{\"step\": \"pack\", \"particles\": @1}"),
+         "/steps/1/particles",
+         {"must be"}},
+        {"a_pack_that_is_too_small_for_its_forces",
+         step("@{\"step\": \"pack\", \"particles\": 4}"),
+         "/steps/1",
+         {"too few particles"}},
+    };
+}
+
 std::vector<Mistake> all_mistakes()
 {
     std::vector<Mistake> all = mistakes_of_syntax();
-    for (const auto& more :
-         {mistakes_of_the_suspension(), mistakes_of_the_steps(), mistakes_of_sweeps()})
+    for (const auto& more : {mistakes_of_the_suspension(), mistakes_of_the_steps(),
+                             mistakes_of_sweeps(), mistakes_of_ensembles()})
         all.insert(all.end(), more.begin(), more.end());
     return all;
 }
