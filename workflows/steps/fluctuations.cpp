@@ -41,12 +41,15 @@ struct FluctuationsStep {
     static constexpr double largest_kurtosis = 3;  // excess; 6 for exponentially rare excursions
 
     std::string y = "shear_rate";
+    std::optional<double> from_strain;
     PictureSize size;
     std::vector<std::string> runs;  // known when the step is validated
 
     void describe(io::Fields& f)
     {
         f("y", y, field_names(), "scalar of the time series");
+        f("from_strain", from_strain, io::between(0, 1e4), "-",
+          "strain from which on the series count; default: where the start-up of each run ends");
         size.describe(f);
     }
 
@@ -56,6 +59,13 @@ struct FluctuationsStep {
         if (runs.empty()) throw node.error("needs a run: put a step \"shear\" before it");
         plan.needs.plotted_pixels = size.pixels();
         plan.endings = {"", "_variance"};
+    }
+
+    std::span<const Sample> counted(const Run& run) const
+    {
+        Run from = run;
+        if (from_strain) from.start_up = from_strain;
+        return std::span(run.series).last(stationary_part(from).size());
     }
 
     std::string csv_text(const std::vector<Fluctuating>& all) const
@@ -89,8 +99,8 @@ struct FluctuationsStep {
         for (const Fluctuating& one : all) {
             render::Series series;
             series.label = "$n$ = " + std::to_string(one.run->particles);
-            series.x = column(one.run->series, &Sample::strain);
-            series.y = column(one.run->series, field_named(y).value);
+            series.x = column(counted(*one.run), &Sample::strain);
+            series.y = column(counted(*one.run), field_named(y).value);
             series.line_width = 1.6;
             plot.series.push_back(std::move(series));
         }
@@ -185,7 +195,7 @@ struct FluctuationsStep {
         std::vector<Fluctuating> all;
         for (const std::string& name : runs) {
             const Run& run = context.run(name);
-            const std::span<const Sample> samples = stationary_part(run);
+            const std::span<const Sample> samples = counted(run);
             if (run.jammed || samples.size() < 10) continue;
             Fluctuating one{&run, fluctuations(column(samples, field_named(y).value))};
             if (one.of.mean.mean != 0) all.push_back(std::move(one));
