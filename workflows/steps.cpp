@@ -20,6 +20,7 @@ std::span<const StepKind> step_kinds()
                                   compare_step(),
                                   jamming_step(),
                                   wyart_cates_step(),
+                                  frictional_fraction_step(),
                                   contacts_step(),
                                   structure_step(),
                                   nonaffine_step(),

@@ -19,6 +19,7 @@ StepKind adaptive_flow_curve_step();
 StepKind statistics_step();
 StepKind compare_step();
 StepKind jamming_step();
+StepKind frictional_fraction_step();
 StepKind step_stress_step();
 StepKind wyart_cates_step();
 StepKind one_dimensional_flow_step();

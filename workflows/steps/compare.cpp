@@ -32,6 +32,16 @@ struct Mean {
     std::vector<Estimate> of;  // compared
 };
 
+/// What is imposed is exact.
+Estimate mean_of(const Run& run, const std::string& name)
+{
+    const auto* stress = std::get_if<ImposedStress>(&run.control);
+    const auto* rate = std::get_if<ImposedRate>(&run.control);
+    if (stress && name == "shear_stress") return {.mean = stress->value};
+    if (rate && name == "shear_rate") return {.mean = rate->value};
+    return estimate_mean(column(stationary_part(run), field_named(name).value));
+}
+
 struct Compare {
     double confidence = 0.95;
     PictureSize size;
@@ -125,9 +135,7 @@ struct Compare {
             if (run.jammed) jammed.push_back(name);
             if (run.jammed || run.series.empty()) continue;
             Mean mean{&run, {}};
-            for (const char* one : compared)
-                mean.of.push_back(
-                    estimate_mean(column(stationary_part(run), field_named(one).value)));
+            for (const char* one : compared) mean.of.push_back(mean_of(run, one));
             means.push_back(std::move(mean));
         }
         context.results["jammed"] = std::move(jammed);
