@@ -141,9 +141,10 @@ struct WyartCatesStep {
         for (const auto& [volume_fraction, curve] : curves) {
             const double stress = largest_stress(best.fit.model, volume_fraction);
             const CurveShape shape = model_shape(best.fit.model, volume_fraction);
-            const auto same = std::count_if(
-                best.drawn.begin(), best.drawn.end(),
-                [&](const WyartCates& m) { return model_shape(m, volume_fraction) == shape; });
+            const auto same = std::count_if(best.drawn.begin(), best.drawn.end(),
+                                            [&, phi = volume_fraction](const WyartCates& m) {
+                                                return model_shape(m, phi) == shape;
+                                            });
             Json json = {{"volume_fraction", volume_fraction},
                          {"shape", shape_name(shape)},
                          {"share_of_bootstrap", double(same) / bootstrap_samples}};
