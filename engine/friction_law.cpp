@@ -2,6 +2,8 @@
 
 #include "engine/error.h"
 
+#include <unsupported/Eigen/LevenbergMarquardt>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -28,33 +30,41 @@ void check(std::span<const FrictionPoint> points)
 }
 
 /// ln onset stress, ln share
-using Parameters = Eigen::Vector2d;
+using Parameters = Eigen::VectorXd;
 
 double fraction_of(const Parameters& p, double stress)
 {
     return std::exp(p[1] - std::exp(p[0]) / stress);
 }
 
-struct Linearised {
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-    Parameters gradient = Parameters::Zero();
-    double chi2 = 0;
-};
-
-Linearised linearised(const Parameters& p, std::span<const FrictionPoint> points)
-{
-    Linearised result;
-    for (const FrictionPoint& point : points) {
-        const double f = fraction_of(p, point.stress);
-        const double residual = (point.fraction - f) / point.standard_error;
-        const Parameters slope(-f * std::exp(p[0]) / point.stress, f);
-        const Parameters row = slope / point.standard_error;
-        result.normal += row * row.transpose();
-        result.gradient += row * residual;
-        result.chi2 += residual * residual;
+/// For Eigen's unsupported Levenberg-Marquardt.
+struct Residuals : Eigen::DenseFunctor<double> {
+    explicit Residuals(std::span<const FrictionPoint> list)
+        : Eigen::DenseFunctor<double>(2, static_cast<int>(list.size())), points(list)
+    {
     }
-    return result;
-}
+
+    int operator()(const Eigen::VectorXd& p, Eigen::VectorXd& residual) const
+    {
+        for (int k = 0; k < values(); ++k) {
+            const FrictionPoint& point = points[static_cast<std::size_t>(k)];
+            residual[k] = (fraction_of(p, point.stress) - point.fraction) / point.standard_error;
+        }
+        return 0;
+    }
+    int df(const Eigen::VectorXd& p, Eigen::MatrixXd& slope) const
+    {
+        for (int k = 0; k < values(); ++k) {
+            const FrictionPoint& point = points[static_cast<std::size_t>(k)];
+            const double relative = fraction_of(p, point.stress) / point.standard_error;
+            slope(k, 0) = -relative * std::exp(p[0]) / point.stress;
+            slope(k, 1) = relative;
+        }
+        return 0;
+    }
+
+    std::span<const FrictionPoint> points;
+};
 
 /// A straight line through ln f over 1/stress, with the weights of ln f.
 Parameters start(std::span<const FrictionPoint> points)
@@ -69,7 +79,7 @@ Parameters start(std::span<const FrictionPoint> points)
         right += row * weight * std::log(p.fraction);
     }
     const Eigen::Vector2d line = normal.ldlt().solve(right);
-    return {std::log(std::max(line[1], 1e-6)), line[0]};
+    return Eigen::Vector2d(std::log(std::max(line[1], 1e-6)), line[0]);
 }
 
 }
@@ -82,33 +92,25 @@ double FrictionLaw::fraction(double stress) const
 FrictionLaw fit_friction_law(std::span<const FrictionPoint> points)
 {
     check(points);
-    Parameters p = start(points);
-    Linearised now = linearised(p, points);
-    double damping = 1e-3;
-    constexpr int most_iterations = 500;
-    for (int k = 0; k < most_iterations; ++k) {
-        Eigen::Matrix2d damped = now.normal;
-        damped.diagonal() *= 1 + damping;
-        const Parameters step = damped.ldlt().solve(now.gradient);
-        const Linearised next = linearised(p + step, points);
-        if (next.chi2 <= now.chi2) {
-            p += step;
-            now = next;
-            damping = std::max(damping / 10, 1e-12);
-            if (step.norm() < 1e-10) break;
-        } else {
-            damping *= 10;
-            if (damping > 1e12) break;  // nothing smaller nearby
-        }
-    }
-    const Eigen::Matrix2d covariance = now.normal.inverse();
+    Residuals residuals(points);
+    Eigen::LevenbergMarquardt<Residuals> method(residuals);
+    method.setFtol(1e-15);
+    method.setXtol(1e-10);
+    Eigen::VectorXd p = start(points);
+    method.minimize(p);
+    Eigen::VectorXd residual(residuals.values());
+    Eigen::MatrixXd slope(residuals.values(), 2);
+    residuals(p, residual);
+    residuals.df(p, slope);
+    const Eigen::Matrix2d covariance = (slope.transpose() * slope).inverse();
     if (!p.allFinite() || !covariance.allFinite())
         throw Error(ErrorKind::numerics, "friction law", "the fit does not converge");
     const auto value = [&](int i) {
         return Value{std::exp(p[i]), std::exp(p[i]) * std::sqrt(covariance(i, i))};
     };
     FrictionLaw law{.onset_stress = value(0), .share = value(1)};
-    if (points.size() > 2) law.chi2_per_degree = now.chi2 / static_cast<double>(points.size() - 2);
+    if (points.size() > 2)
+        law.chi2_per_degree = residual.squaredNorm() / static_cast<double>(points.size() - 2);
     return law;
 }
 

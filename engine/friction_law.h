@@ -4,7 +4,8 @@
 //
 // (Wyart & Cates, Phys. Rev. Lett. 112, 098302, 2014, with the form of Mari, Seto, Morris & Denn,
 // J. Rheol. 58, 1693, 2014), times the share f_infinity that is reached at high stress: of close
-// pairs not all touch. Weighted least squares, Gauss-Newton in the logarithms of both parameters.
+// pairs not all touch. Weighted least squares by Levenberg-Marquardt in the logarithms of both
+// parameters.
 //
 // Tests: exact points, the scatter of fits to noisy points against the errors.
 #pragma once

@@ -35,4 +35,11 @@ constexpr double uniform(std::uint64_t seed, std::uint32_t stream, std::uint64_t
     return static_cast<double>(bits) * 0x1p-53;
 }
 
+/// A seed below 2^53 made from another one.
+constexpr std::uint64_t derived_seed(std::uint64_t seed, std::uint32_t stream,
+                                     std::uint64_t counter)
+{
+    return static_cast<std::uint64_t>(uniform(seed, stream, counter) * 0x1p53);
+}
+
 }

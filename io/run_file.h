@@ -58,12 +58,15 @@ struct RunSummary {
     Control control;
     double strain = 0;           // of the last frame [-]
     double volume_fraction = 0;  // of the first frame [-]
+    double narrowest_box = 0;    // likewise [a]
+    double largest_radius = 0;   // [a]
 };
 
 template <class Archive>
 void archive(Archive& a, RunSummary& s)
 {
-    a(s.samples, s.frames, s.particles, s.control, s.strain, s.volume_fraction);
+    a(s.samples, s.frames, s.particles, s.control, s.strain, s.volume_fraction, s.narrowest_box,
+      s.largest_radius);
 }
 
 /// Checks all that read_run checks, and that boxes and positions are finite, without taking the run

@@ -294,9 +294,14 @@ RunSummary check_run(const std::filesystem::path& path)
     check_samples(observables, summary.samples);
     summary.frames = rows_of(trajectory.open_group("position"), "time");
     check_values<double>(trajectory.open_group("position"), "time", {summary.frames});
-    summary.particles = read_radii(trajectory).size();
+    const std::vector<double> radius = read_radii(trajectory);
+    summary.particles = radius.size();
+    summary.largest_radius = *std::max_element(radius.begin(), radius.end());
     check_frames(file, trajectory, summary.frames, summary.particles);
     if (summary.frames == 0) return summary;
+    const auto edges =
+        element_values<double>(trajectory.open_group("box"), "edges", {summary.frames, 3, 3});
+    summary.narrowest_box = std::min({edges[0], edges[4], edges[8]});
     const Shape frames{summary.frames};
     summary.strain = element_values<double>(file.open_group("state"), "strain", frames).back();
     summary.volume_fraction =

@@ -66,11 +66,9 @@ void set_material(vtkProperty* property)
     property->SetSpecularPower(30);
 }
 
-vtkSmartPointer<vtkActor> sphere_actor(const std::vector<ColouredSphere>& spheres)
+/// Lit, in the colours of the point array "colour".
+vtkSmartPointer<vtkActor> coloured_actor(vtkMapper* mapper)
 {
-    vtkNew<vtkOpenGLSphereMapper> mapper;
-    mapper->SetInputData(sphere_data(spheres));
-    mapper->SetScaleArray("radius");
     mapper->SetScalarModeToUsePointFieldData();
     mapper->SelectColorArray("colour");
     mapper->SetColorModeToDirectScalars();
@@ -78,6 +76,14 @@ vtkSmartPointer<vtkActor> sphere_actor(const std::vector<ColouredSphere>& sphere
     actor->SetMapper(mapper);
     set_material(actor->GetProperty());
     return actor;
+}
+
+vtkSmartPointer<vtkActor> sphere_actor(const std::vector<ColouredSphere>& spheres)
+{
+    vtkNew<vtkOpenGLSphereMapper> mapper;
+    mapper->SetInputData(sphere_data(spheres));
+    mapper->SetScaleArray("radius");
+    return coloured_actor(mapper);
 }
 
 vtkSmartPointer<vtkActor> rod_actor(const std::vector<ColouredRod>& rods)
@@ -111,13 +117,7 @@ vtkSmartPointer<vtkActor> rod_actor(const std::vector<ColouredRod>& rods)
     tubes->CappingOn();
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputConnection(tubes->GetOutputPort());
-    mapper->SetScalarModeToUsePointFieldData();
-    mapper->SelectColorArray("colour");
-    mapper->SetColorModeToDirectScalars();
-    auto actor = vtkSmartPointer<vtkActor>::New();
-    actor->SetMapper(mapper);
-    set_material(actor->GetProperty());
-    return actor;
+    return coloured_actor(mapper);
 }
 
 /// Thin tubes rather than lines: they are hidden by spheres exactly and smoothed like everything

@@ -12,16 +12,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json quantity(double mean, double error, std::string_view unit)
-{
-    return {{"mean", mean}, {"standard_error", error}, {"unit", unit}};
-}
-
-Json quantity(const Estimate& estimate, std::string_view unit)
-{
-    return quantity(estimate.mean, estimate.standard_error, unit);
-}
-
 /// Strain over time, with the scatter of the time that each interval took.
 Estimate rate_over_time(std::span<const Sample> samples)
 {
@@ -39,13 +29,26 @@ Estimate rate_over_time(std::span<const Sample> samples)
 
 }
 
-std::span<const Sample> stationary_part(const Run& run)
+Json quantity_json(double mean, double standard_error, std::string_view unit)
+{
+    return {{"mean", mean}, {"standard_error", standard_error}, {"unit", unit}};
+}
+
+Json quantity_json(const Value& value, std::string_view unit)
+{
+    return quantity_json(value.mean, value.standard_error, unit);
+}
+
+std::span<const Sample> samples_from(const Run& run, double strain)
 {
     std::size_t first = 0;
-    while (run.start_up && first < run.series.size() &&
-           run.series[first].strain < *run.start_up - 1e-9)
-        ++first;
+    while (first < run.series.size() && run.series[first].strain < strain - 1e-9) ++first;
     return std::span(run.series).subspan(first);
+}
+
+std::span<const Sample> stationary_part(const Run& run)
+{
+    return run.start_up ? samples_from(run, *run.start_up) : std::span(run.series);
 }
 
 const SampleField& field_named(std::string_view name)
@@ -91,7 +94,7 @@ Json averages_json(const Run& run)
         const double value = stress.mean / over.mean;
         const double error =
             std::hypot(stress.standard_error / stress.mean, over.standard_error / over.mean);
-        return quantity(value, std::abs(value) * error, "eta0");
+        return quantity_json(value, std::abs(value) * error, "eta0");
     };
 
     Json result;
@@ -101,11 +104,12 @@ Json averages_json(const Run& run)
     result["errors_reliable"] = varying.reliable;
     result["viscosity"] = viscosity(rate);
     result["viscosity_time_average"] = viscosity(rate_in_time);
-    result["shear_rate_time_average"] = quantity(rate_in_time, "rate0");
+    result["shear_rate_time_average"] =
+        quantity_json(rate_in_time.mean, rate_in_time.standard_error, "rate0");
     for (const SampleField& field : sample_fields()) {
         if (field.name == "strain" || field.name == "time" || field.name == "viscosity") continue;
-        result[std::string(field.name)] =
-            quantity(estimate_mean(column(samples, field.value)), field.unit);
+        const Estimate e = estimate_mean(column(samples, field.value));
+        result[std::string(field.name)] = quantity_json(e.mean, e.standard_error, field.unit);
     }
     return result;
 }

@@ -4,6 +4,7 @@
 // over time of the shear rate is strain over time. Viscosities are stress over mean rate, never the
 // mean of stress over rate.
 #pragma once
+#include "engine/value.h"
 #include "workflows/step.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -23,6 +24,13 @@ std::vector<double> column(std::span<const Sample> samples, double Sample::*valu
 /// Sets run.start_up to where the shear rate (or, under an imposed rate, the stress) has become
 /// stationary.
 void find_start_up(Run& run);
+
+/// {"mean", "standard_error", "unit"}
+nlohmann::ordered_json quantity_json(double mean, double standard_error, std::string_view unit);
+nlohmann::ordered_json quantity_json(const Value& value, std::string_view unit);
+
+/// Samples at a strain and beyond.
+std::span<const Sample> samples_from(const Run& run, double strain);
 
 /// {"shear_rate": {"mean", "standard_error", "unit", ...}, "viscosity": ..., ...}
 nlohmann::ordered_json averages_json(const Run& run);

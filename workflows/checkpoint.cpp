@@ -141,8 +141,7 @@ void Keeper::keep(double strain, std::vector<FileMark> files, std::string run)
 void Keeper::stop_if_asked(const std::string& next) const
 {
     if (const auto reason = interruption_.asked())
-        throw Error(ErrorKind::interrupted, step_.name,
-                    *reason + "; the same command " + next);
+        throw Error(ErrorKind::interrupted, step_.name, *reason + "; the same command " + next);
 }
 
 }

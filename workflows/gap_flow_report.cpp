@@ -84,6 +84,16 @@ render::Plot rates_plot(render::Plot plot, const Development& d)
         series_of(d, "at the walls", [](const Moment& m) { return wall_rate(m) - 1; }),
         series_of(d, "mean, what a rheometer shows",
                   [](const Moment& m) { return m.mean_rate - 1; })};
+    double low = 0, high = 0;
+    for (const render::Series& series : plot.series) {
+        const auto [least, most] = std::minmax_element(series.y.begin(), series.y.end());
+        low = std::min(low, *least);
+        high = std::max(high, *most);
+    }
+    if (high > low) {  // room for the legend
+        plot.y.minimum = low - 0.1 * (high - low);
+        plot.y.maximum = high + 0.4 * (high - low);
+    }
     return plot;
 }
 

@@ -2,6 +2,7 @@
 
 #include "engine/value.h"
 #include "io/atomic_file.h"
+#include "workflows/averages.h"
 
 #include <cmath>
 
@@ -116,10 +117,7 @@ void report(Context& context, const std::vector<Summary>& summaries)
                   {"without_packing", s.unpacked},        {"jam", s.jam},
                   {"jam_at_the_lowest", s.always},        {"flow_again_at_the_lowest", s.unjam},
                   {"flow_in_reverse", s.reverse}};
-        if (!s.brackets.empty())
-            json["jamming_stress"] = {{"mean", s.stress.mean},
-                                      {"standard_error", s.stress.standard_error},
-                                      {"unit", "sigma0"}};
+        if (!s.brackets.empty()) json["jamming_stress"] = quantity_json(s.stress, "sigma0");
         list.push_back(std::move(json));
     }
     context.results["outcome"] = !jams ? "flows at all stresses"

@@ -4,7 +4,7 @@
 #include "engine/stability.h"
 #include "workflows/step.h"
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -27,5 +27,20 @@ struct MemoryParameters {
     MemoryFlow flow(Value viscosity, Value slope) const;
     nlohmann::ordered_json json() const;
 };
+
+/// Calls `work` on the step with the memory that it names; says why if that was not resolved.
+template <class Step>
+void run_with_memory(const Step& step, Context& context, void (Step::*work)(Context&) const)
+{
+    Step resolved = step;
+    const auto measured = step.memory.measured(context);
+    if (!measured) {
+        context.results["outcome"] = "nothing to say, " + step.memory.response +
+                                     " did not resolve how the suspension remembers";
+        return;
+    }
+    resolved.memory = *measured;
+    (resolved.*work)(context);
+}
 
 }

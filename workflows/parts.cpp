@@ -1,6 +1,5 @@
 #include "workflows/parts.h"
 
-#include "engine/archive.h"
 #include "io/sealed_file.h"
 #include "workflows/checkpoint.h"
 

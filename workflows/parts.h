@@ -5,11 +5,13 @@
 // begun anew. Parts of another key (a changed parameter) and damaged ones are computed again. All
 // are removed when the step is finished. Errors: file, no_space; interrupted.
 #pragma once
+#include "engine/archive.h"
 #include "workflows/step.h"
 
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <type_traits>
 
 namespace sigmaflow::workflows {
 
@@ -21,6 +23,21 @@ public:
     /// The stored bytes of the part, or those that `work` returns, stored. Different parts may be
     /// computed at the same time.
     std::string compute(const std::string& name, const std::function<std::string()>& work) const;
+    /// The same for what can be archived.
+    template <class Work>
+    auto value(const std::string& name, Work&& work) const
+    {
+        std::invoke_result_t<Work> result;
+        const std::string bytes = compute(name, [&] {
+            auto computed = work();
+            ArchiveWriter a;
+            a(computed);
+            return a.bytes();
+        });
+        ArchiveReader a(bytes);
+        a(result);
+        return result;
+    }
 
 private:
     std::filesystem::path folder_;

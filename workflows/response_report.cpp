@@ -112,11 +112,6 @@ std::string csv_text(const std::vector<double>& before, const std::vector<double
     return text + "\n";
 }
 
-Json value_json(const Value& value, std::string_view unit)
-{
-    return {{"mean", value.mean}, {"standard_error", value.standard_error}, {"unit", unit}};
-}
-
 Value value_at(const EnsembleMean& mean, std::size_t k)
 {
     return {mean.mean[k], mean.standard_error[k]};
@@ -127,9 +122,10 @@ Json fit_json(const Relaxation& fit, const std::string& unit)
     Json json{{"exponentials", fit.terms.size()}};
     json["terms"] = Json::array();
     for (const RelaxationTerm& term : fit.terms)
-        json["terms"].push_back({{"amplitude", value_json(term.amplitude, unit)},
-                                 {"relaxation_strain", value_json(term.relaxation_strain, "-")}});
-    json["plateau"] = value_json(fit.plateau, unit);
+        json["terms"].push_back(
+            {{"amplitude", quantity_json(term.amplitude, unit)},
+             {"relaxation_strain", quantity_json(term.relaxation_strain, "-")}});
+    json["plateau"] = quantity_json(fit.plateau, unit);
     json["chi2_per_degree"] = fit.chi2_per_degree;
     json["aic"] = fit.aic;
     json["resolved"] = fit.resolved;
@@ -224,14 +220,14 @@ void report_rates(Context& context, const StressStep& step, const std::vector<Re
     const Columns stress(responses.size(), {step.stress_after - step.stress_before});
     const Columns old_stress(responses.size(), {step.stress_before});
     Json& results = context.results;
-    results["rate_before"] = value_json(value_at(ensemble_mean(before), 0), "rate0");
-    results["rate_just_after"] = value_json(value_at(rate.after, 0), "rate0");
+    results["rate_before"] = quantity_json(value_at(ensemble_mean(before), 0), "rate0");
+    results["rate_just_after"] = quantity_json(value_at(rate.after, 0), "rate0");
     results["rate_at_the_end"] =
-        value_json(value_at(rate.after, rate.after.mean.size() - 1), "rate0");
+        quantity_json(value_at(rate.after, rate.after.mean.size() - 1), "rate0");
     results["viscosity_before"] =
-        value_json(value_at(ensemble_ratio(old_stress, before), 0), "eta0");
+        quantity_json(value_at(ensemble_ratio(old_stress, before), 0), "eta0");
     results["viscosity_of_the_jump"] =
-        value_json(value_at(ensemble_ratio(stress, jump), 0), "eta0");
+        quantity_json(value_at(ensemble_ratio(stress, jump), 0), "eta0");
 }
 
 }
@@ -268,7 +264,7 @@ void report_response(Context& context, const StressStep& step,
         if (contains(fitted, q.name)) context.results["fits"][q.name] = fit(q, after);
     const Quantity& rate = named(quantities, "shear_rate");
     context.results["relaxation_strain"] =
-        value_json(rate.fit->terms.front().relaxation_strain, "-");
+        quantity_json(rate.fit->terms.front().relaxation_strain, "-");
     const auto memory =
         memory_json(*rate.fit, context.results["viscosity_of_the_jump"]["mean"].get<double>());
     if (memory) context.results["memory"] = *memory;

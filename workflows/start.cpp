@@ -49,6 +49,7 @@ void Start::check(const io::JsonNode& node, Plan& plan) const
     if (const auto value = node.find("volume_fraction"))
         plan.suspension.check_volume_fraction(*volume_fraction, *value);
     plan.narrowest_box = packing_box(parameters).minCoeff();
+    plan.largest_radius = largest_radius(parameters);
     const double least = narrowest_box_allowed(plan.suspension, plan.suspension.model);
     if (plan.narrowest_box < least)
         throw node.error("too few particles: the box would be " + short_number(plan.narrowest_box) +
@@ -56,6 +57,16 @@ void Start::check(const io::JsonNode& node, Plan& plan) const
                          " a, twice the distance up to which two of the largest spheres interact");
     plan.particles = parameters.particles;
     plan.volume_fraction = parameters.volume_fraction;
+}
+
+std::optional<State> packed(const PackingParameters& packing, const std::function<void()>& pulse)
+{
+    try {
+        return random_packing(packing, [&](int, double) { pulse(); });
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::numerics) throw;
+        return std::nullopt;
+    }
 }
 
 Model checked_model(const io::ModelChanges& changes, const io::JsonNode& step, const Plan& plan)

@@ -5,6 +5,7 @@
 #include "io/model_fields.h"
 #include "workflows/step.h"
 
+#include <functional>
 #include <optional>
 
 namespace sigmaflow::workflows {
@@ -16,10 +17,14 @@ struct Start {
 
     void describe(io::Fields& f);
     PackingParameters packing(const Suspension& suspension) const;
-    /// Sets particles, volume fraction and box of the plan. Errors: input (denser than random close
-    /// packing, a box too small for the range of the forces, both radii and particles).
+    /// Sets particles, volume fraction, box and largest radius of the plan. Errors: input (denser
+    /// than random close packing, a box too small for the range of the forces, both radii and
+    /// particles).
     void check(const io::JsonNode& node, Plan& plan) const;
 };
+
+/// Nothing if no packing without overlaps is found; `pulse` is called now and then.
+std::optional<State> packed(const PackingParameters& packing, const std::function<void()>& pulse);
 
 /// The model of the suspension with the changes of a step, in the box of the plan. Errors: input
 /// (what check_model refuses, forces of longer range than the box has room for).

@@ -34,6 +34,7 @@ struct PlannedRun {
     Control control;
     int particles = 0;
     double volume_fraction = 0;
+    double narrowest_box = 0, largest_radius = 0;  // [a]
     double strain = 0;
     double frames = 0;  // that later steps can use
 };
@@ -61,9 +62,9 @@ struct Plan {
     std::filesystem::path folder;  // of the workflow file: paths in it are relative to that
     std::string step_name;
     bool has_state = false;
-    int particles = 0;           // of the last packing
-    double volume_fraction = 0;  // likewise
-    double narrowest_box = 0;    // likewise [a]
+    int particles = 0;                             // of the last packing
+    double volume_fraction = 0;                    // likewise
+    double narrowest_box = 0, largest_radius = 0;  // likewise [a]
     // set by the step that is validated:
     bool changes_state = false;
     std::vector<std::filesystem::path>
@@ -81,10 +82,16 @@ struct Plan {
     void need_state(const io::JsonNode& step) const;
     /// Error(input) if the workflow names no suspension.
     void need_suspension(const io::JsonNode& step) const;
+    /// The run of the last packing that the step makes, with `frames` for later steps.
+    PlannedRun shears(const Control& control, double strain, double frames) const;
     /// The run that the field `of` names, or the last one if it is empty, with frames if asked for;
     /// `of` and what the step needs and uses are filled in. Errors: input (no such run).
     const PlannedRun& need_run(const io::JsonNode& step, std::string& of, bool with_frames);
 };
+
+/// Error(input) at the key if a strain is beyond the end of the run.
+void check_within(const PlannedRun& run, const io::JsonNode& step, const char* key,
+                  const std::optional<double>& strain);
 
 /// A finished shearing step.
 struct Run {

@@ -1,7 +1,5 @@
 #include "workflows/stored_frames.h"
 
-#include "engine/packing.h"
-
 #include <algorithm>
 
 namespace sigmaflow::workflows {
@@ -23,11 +21,7 @@ void FrameChoice::describe(io::Fields& f)
 const PlannedRun& FrameChoice::validate(const io::JsonNode& node, Plan& plan)
 {
     const PlannedRun& run = plan.need_run(node, of, true);
-    if (from_strain && *from_strain > run.strain)
-        throw node.member("from_strain")
-            .wrong("must be <= " + io::number_text(run.strain) + ", the strain of " +
-                   io::in_quotes(of));
-    plan.needs.frames_read = run.frames;
+    check_within(run, node, "from_strain", from_strain);
     return run;
 }
 
@@ -73,13 +67,6 @@ std::string cells(const Estimate& estimate)
     if (estimate.used == 0) return ",,";
     if (estimate.used == 1) return "," + io::number_text(estimate.mean) + ",";
     return cells(estimate.mean, estimate.standard_error);
-}
-
-double half_box(const Plan& plan, const PlannedRun& run)
-{
-    PackingParameters packing = plan.suspension.packing;
-    packing.volume_fraction = run.volume_fraction;
-    return packing_box(packing).minCoeff() / 2;
 }
 
 double checked_distance(const io::JsonNode& node, const std::optional<double>& distance,

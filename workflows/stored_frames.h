@@ -35,9 +35,6 @@ nlohmann::ordered_json estimate_json(const Estimate& estimate, std::string_view 
 std::string cells(const Estimate& estimate);
 std::string cells(double mean, double standard_error);
 
-/// Half the smallest length of the box that a run has [a].
-double half_box(const Plan& plan, const PlannedRun& run);
-
 /// Error(input) if a distance is not allowed in the box of the run. The default is half the box, at
 /// most `longest` [a].
 double checked_distance(const io::JsonNode& node, const std::optional<double>& distance,

@@ -18,6 +18,18 @@ void Plan::need_suspension(const io::JsonNode& step) const
         throw step.error("needs a \"suspension\" in the workflow: only stored runs do without");
 }
 
+PlannedRun Plan::shears(const Control& control, double strain, double frames) const
+{
+    return {.name = step_name,
+            .control = control,
+            .particles = particles,
+            .volume_fraction = volume_fraction,
+            .narrowest_box = narrowest_box,
+            .largest_radius = largest_radius,
+            .strain = strain,
+            .frames = frames};
+}
+
 const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool with_frames)
 {
     const auto found = [&](const PlannedRun& run) -> const PlannedRun& {
@@ -42,6 +54,14 @@ const PlannedRun& Plan::need_run(const io::JsonNode& step, std::string& of, bool
     const std::size_t index = step.member("of").word(names);
     return found(*std::find_if(runs.begin(), runs.end(),
                                [&](const PlannedRun& run) { return run.name == names[index]; }));
+}
+
+void check_within(const PlannedRun& run, const io::JsonNode& step, const char* key,
+                  const std::optional<double>& strain)
+{
+    if (strain && *strain > run.strain)
+        throw step.member(key).wrong("must be <= " + io::number_text(run.strain) +
+                                     ", the strain of " + io::in_quotes(run.name));
 }
 
 const Run& Context::run(const std::string& name) const
@@ -210,6 +230,7 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::filesyste
               .particles = 0,
               .volume_fraction = 0,
               .narrowest_box = 0,
+              .largest_radius = 0,
               .changes_state = false,
               .inputs = {},
               .needs = {},

@@ -58,6 +58,20 @@ TEST_F(StoredRun, GivesTheNumbersOfTheRunItself)
               text_of(folder / "out/first/velocity_profile.csv"));
 }
 
+// Distances end at half the box of the run, not at that of any suspension of the workflow.
+TEST_F(StoredRun, BringsItsOwnBox)
+{
+    for (const char* suspension : {"", "\"suspension\": {\"particles\": 400},"}) {
+        write("structure.json", std::string("{") + suspension + R"("steps": [
+            {"step": "stored_run", "file": "out/first/shear/run.h5"}, {"step": "structure"}]})");
+        const Said said = run("run -q structure.json --force");
+        ASSERT_EQ(said.exit_code, 0) << said.err;
+        const Vec3 box = io::read_run(folder / "out/first/shear/run.h5").frames[0].state.box.length;
+        EXPECT_NEAR(steps("out/structure")["structure"]["largest_distance"], box.minCoeff() / 2,
+                    1e-12);
+    }
+}
+
 TEST_F(StoredRun, IsReadAgainWhenItsFileIsAnother)
 {
     write("second.json", second);

@@ -5,7 +5,6 @@
 // points are computed side by side, in rounds: first equal intervals, then what is needed most.
 // Each stretch of a run is a part (workflows/parts.h).
 #include "engine/adaptive_curve.h"
-#include "engine/archive.h"
 #include "engine/random.h"
 #include "workflows/averages.h"
 #include "workflows/curve_report.h"
@@ -122,8 +121,7 @@ struct AdaptiveFlowCurve {
             // a stress has the same packing whenever it is asked for
             const auto number = std::bit_cast<std::uint64_t>(point.stress);
             constexpr std::uint32_t stream = 0x4146;  // of these seeds
-            packing.seed =
-                static_cast<std::uint64_t>(uniform(packing.seed, stream, number) * 0x1p53);
+            packing.seed = derived_seed(packing.seed, stream, number);
             stretch.end = random_packing(packing, [&](int, double) { pulse(); });
         }
         ShearingParameters parameters;
@@ -147,22 +145,14 @@ struct AdaptiveFlowCurve {
                                          : std::min(point.strain, maximum_strain - point.strain);
                 const std::string name =
                     io::number_text(point.stress) + "_" + std::to_string(point.stretches);
-                const std::string bytes = parts.compute(name, [&] {
-                    Stretch stretch = shear_on(context.suspension, point, until, pulse);
-                    ArchiveWriter a;
-                    a(stretch);
-                    return a.bytes();
-                });
-                Stretch stretch;
-                ArchiveReader a(bytes);
-                a(stretch);
-                point.add(std::move(stretch));
+                point.add(parts.value(
+                    name, [&] { return shear_on(context.suspension, point, until, pulse); }));
             });
     }
 
-    Run run_of(const Point& point, const Start& begin, const Suspension& suspension) const
+    Run run_of(const Point& point, const Suspension& suspension) const
     {
-        const PackingParameters packing = begin.packing(suspension);
+        const PackingParameters packing = start.packing(suspension);
         Run run{.name = io::number_text(point.stress),
                 .control = ImposedStress{point.stress},
                 .volume_fraction = packing.volume_fraction,
@@ -180,17 +170,16 @@ struct AdaptiveFlowCurve {
     {
         Curve curve;
         for (const Point& point : all)
-            curve.by_stress[point.stress] = measured(run_of(point, start, suspension));
+            curve.by_stress[point.stress] = measured(run_of(point, suspension));
         return curve;
     }
 
     /// The points to be sheared next; new ones are added. Those that may not become longer are left
     /// as they are.
-    std::vector<Point*> next_round(std::vector<Point>& all, const Suspension& suspension) const
+    std::vector<Point*> next_round(std::vector<Point>& all, const Curve& curve) const
     {
         std::vector<FlowPoint> known;
-        for (const auto& [stress, m] : curve_of(all, suspension).by_stress)
-            known.push_back(m.point());
+        for (const auto& [stress, m] : curve.by_stress) known.push_back(m.point());
         const CurveTasks tasks = next_curve_tasks(known, goal);
         for (double stress : tasks.insert)
             all.push_back({.stress = stress, .end = {}, .series = {}});
@@ -216,11 +205,12 @@ struct AdaptiveFlowCurve {
         std::vector<Point*> round;
         for (Point& point : all) round.push_back(&point);
         int rounds = 0;
+        Curve curve;
         for (; !round.empty(); ++rounds) {
             shear_round(context, parts, round);
-            round = next_round(all, context.suspension);
+            curve = curve_of(all, context.suspension);
+            round = next_round(all, curve);
         }
-        const Curve curve = curve_of(all, context.suspension);
         double total = 0, largest_error = 0;
         for (const Point& point : all) total += point.strain;
         for (const auto& [stress, m] : curve.by_stress)

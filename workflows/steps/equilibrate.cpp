@@ -48,8 +48,7 @@ struct Equilibrate {
                                                   ", got " + io::number_text(window));
         plan.changes_state = true;
         plan.needs.frames = 1;
-        plan.runs.push_back(
-            {plan.step_name, control, plan.particles, plan.volume_fraction, maximum_strain, 0});
+        plan.runs.push_back(plan.shears(control, maximum_strain, 0));
     }
 
     /// Compares the last two windows of the series.

@@ -63,9 +63,7 @@ struct FluctuationsStep {
 
     std::span<const Sample> counted(const Run& run) const
     {
-        Run from = run;
-        if (from_strain) from.start_up = from_strain;
-        return std::span(run.series).last(stationary_part(from).size());
+        return from_strain ? samples_from(run, *from_strain) : stationary_part(run);
     }
 
     std::string csv_text(const std::vector<Fluctuating>& all) const
@@ -160,23 +158,19 @@ struct FluctuationsStep {
         bool intermittent = false;
         context.results["runs"] = Json::array();
         for (const Fluctuating& one : all) {
-            const auto value = [](double mean, double error) {
-                return Json{{"mean", mean}, {"standard_error", error}, {"unit", "-"}};
-            };
             const Fluctuations& f = one.of;
             intermittent |= f.kurtosis - 3 * f.kurtosis_error > largest_kurtosis;
             context.results["runs"].push_back(
                 {{"run", one.run->name},
                  {"particles", one.run->particles},
-                 {"relative_variance", value(one.relative(), one.relative_error())},
-                 {"skewness", value(f.skewness, f.skewness_error)},
-                 {"kurtosis", value(f.kurtosis, f.kurtosis_error)}});
+                 {"relative_variance", quantity_json(one.relative(), one.relative_error(), "-")},
+                 {"skewness", quantity_json(f.skewness, f.skewness_error, "-")},
+                 {"kurtosis", quantity_json(f.kurtosis, f.kurtosis_error, "-")}});
         }
         std::string outcome = intermittent ? "rare large excursions" : "no rare large excursions";
         if (law) {
             const PowerLaw& fit = law->variance;
-            context.results["exponent"] = {
-                {"mean", fit.exponent}, {"standard_error", fit.exponent_error}, {"unit", "-"}};
+            context.results["exponent"] = quantity_json(fit.exponent, fit.exponent_error, "-");
             context.results["chi2_per_degree"] = fit.chi2_per_degree;
             const double distance = std::abs(fit.exponent + 1) / fit.exponent_error;
             if (fit.exponent_error > largest_exponent_error)

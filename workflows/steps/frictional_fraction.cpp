@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Curve {
+struct Shares {
     std::vector<FrictionPoint> points;
     std::optional<FrictionLaw> law;
 };
@@ -61,9 +61,9 @@ struct FrictionalFraction {
                              std::max({mean.standard_error, independent, 1 / n})};
     }
 
-    std::map<double, Curve> curves_of_runs(const Context& context) const
+    std::map<double, Shares> curves_of_runs(const Context& context) const
     {
-        std::map<double, Curve> curves;
+        std::map<double, Shares> curves;
         for (const PlannedRun& run : runs)
             if (const auto point = point_of(context.run(run.name)))
                 curves[run.volume_fraction].points.push_back(*point);
@@ -75,7 +75,7 @@ struct FrictionalFraction {
         return curves;
     }
 
-    static std::string csv_text(const std::map<double, Curve>& curves)
+    static std::string csv_text(const std::map<double, Shares>& curves)
     {
         std::string text =
             "# fraction: frictional contacts over close pairs; fitted: share exp(-onset/stress)\n"
@@ -90,7 +90,7 @@ struct FrictionalFraction {
         return text + "\n";
     }
 
-    render::Plot plot(const std::map<double, Curve>& curves) const
+    render::Plot plot(const std::map<double, Shares>& curves) const
     {
         render::Plot plot = size.plot();
         plot.x.title = "shear stress $σ$/$σ$_{0}";
@@ -129,19 +129,15 @@ struct FrictionalFraction {
 
     void run(Context& context) const
     {
-        const std::map<double, Curve> curves = curves_of_runs(context);
+        const std::map<double, Shares> curves = curves_of_runs(context);
         bool fitted = false;
         auto& list = context.results["curves"] = Json::array();
         for (const auto& [volume_fraction, curve] : curves) {
             Json json{{"volume_fraction", volume_fraction}};
             if (curve.law) {
                 fitted = true;
-                json["onset_stress"] = {{"mean", curve.law->onset_stress.mean},
-                                        {"standard_error", curve.law->onset_stress.standard_error},
-                                        {"unit", "sigma0"}};
-                json["share_at_high_stress"] = {{"mean", curve.law->share.mean},
-                                                {"standard_error", curve.law->share.standard_error},
-                                                {"unit", "-"}};
+                json["onset_stress"] = quantity_json(curve.law->onset_stress, "sigma0");
+                json["share_at_high_stress"] = quantity_json(curve.law->share, "-");
                 json["chi2_per_degree"] = curve.law->chi2_per_degree;
             }
             list.push_back(std::move(json));

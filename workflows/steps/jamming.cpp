@@ -5,7 +5,6 @@
 // lowest stress is then tried at the lowest stress (unjamming) and at its own stress in the other
 // direction (reversal, in a mirror). Starts and volume fractions are parts (workflows/parts.h).
 #include "engine/jamming.h"
-#include "engine/archive.h"
 #include "engine/random.h"
 #include "workflows/jamming_report.h"
 #include "workflows/parts.h"
@@ -106,37 +105,32 @@ struct Jamming {
         PackingParameters packing = start.packing(suspension);
         packing.volume_fraction = volume_fraction;
         constexpr std::uint32_t stream = 0x4a41;  // of these seeds
-        packing.seed = static_cast<std::uint64_t>(
-            uniform(packing.seed, stream, static_cast<std::uint64_t>(number)) * 0x1p53);
+        packing.seed = derived_seed(packing.seed, stream, static_cast<std::uint64_t>(number));
         Found found{.volume_fraction = volume_fraction,
                     .seed = packing.seed,
                     .bracket = {},
                     .tried = {},
                     .unjamming = {},
                     .reversal = {}};
-        State sheared;
-        try {
-            sheared = random_packing(packing, [&](int, double) { pulse(); });
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::numerics) throw;
-            found.is_packed = false;
-            return found;
-        }
+        std::optional<State> packing_state = packed(packing, pulse);
+        found.is_packed = packing_state.has_value();
+        if (!packing_state) return found;
+        State& sheared = *packing_state;
         const Model of_all = model.applied_to(suspension.model);
         found.tried.push_back(attempt(sheared, of_all, lowest_stress, strain_before, pulse));
         State jammed;
         double jammed_stress = 0;
-        const auto jams = [&](double stress) {
-            if (stress == lowest_stress)  // known from the shear before
-                return found.tried.front().outcome != Outcome::flowing
-                           ? (jammed = sheared, jammed_stress = stress, true)
-                           : false;
-            State state = sheared;
-            found.tried.push_back(attempt(state, of_all, stress, strain, pulse));
+        const auto has_jammed = [&](const State& end, double stress) {
             if (found.tried.back().outcome == Outcome::flowing) return false;
-            jammed = std::move(state);
+            jammed = end;
             jammed_stress = stress;
             return true;
+        };
+        const auto jams = [&](double stress) {
+            if (stress == lowest_stress) return has_jammed(sheared, stress);  // tried before
+            State state = sheared;
+            found.tried.push_back(attempt(state, of_all, stress, strain, pulse));
+            return has_jammed(state, stress);
         };
         found.bracket = bracket_jamming_stress(lowest_stress, highest_stress, ratio, jams);
         found.has_jammed = jammed_stress > 0;
@@ -155,14 +149,9 @@ struct Jamming {
         compute_side_by_side(
             context, static_cast<int>(result.size()), [&](int k, const Pulse& pulse) {
                 const double volume_fraction = all[static_cast<std::size_t>(k / starts)];
-                const std::string bytes = parts.compute(std::to_string(k), [&] {
-                    Found found = search(context.suspension, volume_fraction, k % starts, pulse);
-                    ArchiveWriter a;
-                    a(found);
-                    return a.bytes();
+                result[static_cast<std::size_t>(k)] = parts.value(std::to_string(k), [&] {
+                    return search(context.suspension, volume_fraction, k % starts, pulse);
                 });
-                ArchiveReader a(bytes);
-                a(result[static_cast<std::size_t>(k)]);
             });
         return result;
     }

@@ -129,7 +129,7 @@ struct Nonaffine {
     {
         const PlannedRun& run = choice.validate(node, plan);
         constexpr double longest = 12;
-        reach = checked_distance(node, distance, half_box(plan, run), longest);
+        reach = checked_distance(node, distance, run.narrowest_box / 2, longest);
         plan.needs.plotted_pixels = size.pixels();
     }
 

@@ -224,15 +224,7 @@ struct OneDimensionalFlow {
 
     void run(Context& context) const
     {
-        OneDimensionalFlow step = *this;
-        const auto measured = memory.measured(context);
-        if (!measured) {
-            context.results["outcome"] = "nothing to say, " + memory.response +
-                                         " did not resolve how the suspension remembers";
-            return;
-        }
-        step.memory = *measured;
-        step.integrate(context);
+        run_with_memory(*this, context, &OneDimensionalFlow::integrate);
     }
 };
 

@@ -32,8 +32,7 @@ struct Shear {
                 "gives more than 99999 frames, the strain is " + io::number_text(strain));
         plan.changes_state = true;
         plan.needs.frames = std::floor(strain / frame_interval) + 2;
-        plan.runs.push_back({plan.step_name, control, plan.particles, plan.volume_fraction, strain,
-                             plan.needs.frames});
+        plan.runs.push_back(plan.shears(control, strain, plan.needs.frames));
     }
 
     void run(Context& context) const

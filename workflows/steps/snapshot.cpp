@@ -40,9 +40,7 @@ struct Snapshot {
     void validate(const io::JsonNode& node, Plan& plan)
     {
         const PlannedRun& run = plan.need_run(node, of, true);
-        if (strain && *strain > run.strain)
-            throw node.member("strain").wrong("must be <= " + io::number_text(run.strain) +
-                                              ", the strain of " + io::in_quotes(of));
+        check_within(run, node, "strain", strain);
         plan.needs.drawn_pixels = size.pixels();
     }
 

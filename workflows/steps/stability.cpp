@@ -240,18 +240,7 @@ struct Stability {
         write_plot(context, context.step_name + "_map", map_plot(drawn));
     }
 
-    void run(Context& context) const
-    {
-        Stability step = *this;
-        const auto measured = memory.measured(context);
-        if (!measured) {
-            context.results["outcome"] = "nothing to say, " + memory.response +
-                                         " did not resolve how the suspension remembers";
-            return;
-        }
-        step.memory = *measured;
-        step.analyse(context);
-    }
+    void run(Context& context) const { run_with_memory(*this, context, &Stability::analyse); }
 };
 
 }

@@ -4,7 +4,6 @@
 // Each start packs with a seed of its own, shears at the stress before, and then at the stress
 // after. Starts are parts: they are computed side by side, and an interrupted step goes on with
 // those that are missing.
-#include "engine/archive.h"
 #include "engine/random.h"
 #include "io/atomic_file.h"
 #include "workflows/parts.h"
@@ -112,25 +111,19 @@ struct StepStress {
     {
         PackingParameters packing = start.packing(suspension);
         constexpr std::uint32_t stream = 0x5354;  // of these seeds
-        packing.seed = static_cast<std::uint64_t>(
-            uniform(packing.seed, stream, static_cast<std::uint64_t>(number)) * 0x1p53);
+        packing.seed = derived_seed(packing.seed, stream, static_cast<std::uint64_t>(number));
         const Model of_step = model.applied_to(suspension.model);
         Response response{.seed = packing.seed, .before = {}, .after = {}};
-        State state;
-        try {
-            state = random_packing(packing, [&](int, double) { pulse(); });
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::numerics) throw;
-            response.packed = false;
-            return response;
-        }
+        std::optional<State> state = packed(packing, pulse);
+        response.packed = state.has_value();
+        if (!state) return response;
         Trial before = try_shear(
-            state, task(of_step, stress_before, strain_before, interval_before, {}), pulse);
+            *state, task(of_step, stress_before, strain_before, interval_before, {}), pulse);
         response.before = std::move(before.series);
         response.jammed = before.result.outcome != Outcome::flowing;
         if (response.jammed) return response;
         Trial after =
-            try_shear(state,
+            try_shear(*state,
                       task(model_after(of_step), stress_after, strain_after, series_interval,
                            displacement.value_or(scheme == Scheme::implicit ? 5e-3 : 1e-3)),
                       pulse);
@@ -144,14 +137,8 @@ struct StepStress {
         std::vector<Response> result(static_cast<std::size_t>(starts));
         const Parts parts(context);
         compute_side_by_side(context, starts, [&](int k, const Pulse& pulse) {
-            const std::string bytes = parts.compute(std::to_string(k), [&] {
-                Response response = respond(context.suspension, k, pulse);
-                ArchiveWriter a;
-                a(response);
-                return a.bytes();
-            });
-            ArchiveReader a(bytes);
-            a(result[static_cast<std::size_t>(k)]);
+            result[static_cast<std::size_t>(k)] = parts.value(
+                std::to_string(k), [&] { return respond(context.suspension, k, pulse); });
         });
         return result;
     }

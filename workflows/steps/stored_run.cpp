@@ -60,6 +60,8 @@ struct StoredRunStep {
                              .control = summary.control,
                              .particles = static_cast<int>(summary.particles),
                              .volume_fraction = asked(summary.volume_fraction),
+                             .narrowest_box = summary.narrowest_box,
+                             .largest_radius = summary.largest_radius,
                              .strain = summary.strain,
                              .frames = static_cast<double>(summary.frames)});
         plan.needs.particles = static_cast<double>(summary.particles);

@@ -104,12 +104,9 @@ struct Structure {
     void validate(const io::JsonNode& node, Plan& plan)
     {
         const PlannedRun& run = choice.validate(node, plan);
-        const PackingParameters& packing = plan.suspension.packing;
-        if (packing.particles < 2) throw node.error("needs at least two particles");
+        if (run.particles < 2) throw node.error("needs at least two particles");
         constexpr double longest = 8;
-        const double half = half_box(plan, run);
-        const std::vector<double> radii = packing_radii(packing);
-        const double largest = *std::max_element(radii.begin(), radii.end());
+        const double half = run.narrowest_box / 2, largest = run.largest_radius;
         if (largest * (2 + near_xi) > half)
             throw node.error("needs a larger box, half its smallest length is " +
                              io::number_text(half) + ", near neighbours are up to " +

@@ -118,11 +118,7 @@ struct UniformityStep {
     void validate(const io::JsonNode& node, Plan& plan)
     {
         const PlannedRun& run = plan.need_run(node, of, true);
-        if (from_strain && *from_strain > run.strain)
-            throw node.member("from_strain")
-                .wrong("must be <= " + io::number_text(run.strain) + ", the strain of " +
-                       io::in_quotes(of));
-        plan.needs.frames_read = run.frames;
+        check_within(run, node, "from_strain", from_strain);
         plan.needs.plotted_pixels = size.pixels();
     }
 
