@@ -210,7 +210,7 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::filesyste
         if (const auto node = root.find(field.name)) field.read(*node);
     if (workflow.name.empty()) workflow.name = path.stem().string();
     if (root.has("suspension") || !begins_with_a_stored_run(root))
-        workflow.suspension->check(root.member("suspension"));
+        workflow.suspension->check(root.member("suspension"), path.parent_path());
 
     std::vector<StepText> texts;
     for (const io::JsonNode& node : root.member("steps").elements({1, most_steps}))
@@ -310,9 +310,14 @@ nlohmann::ordered_json Workflow::resolved() const
     io::Fields f;
     suspension->describe(f);
     auto& written = result["suspension"] = io::write_fields(f.list());
+    written.erase("radii_file");               // its numbers are among the radii
     if (!suspension->packing.radii.empty()) {  // these exclude each other
         written.erase("size_ratio");
         written.erase("small_volume_share");
+    }
+    if (!steps.empty() && steps.front().kind == "stored_state") {  // the file says them
+        if (!suspension->says_particles) written.erase("particles");
+        if (!suspension->says_volume_fraction) written.erase("volume_fraction");
     }
     auto& list = result["steps"] = nlohmann::ordered_json::array();
     for (const Step& step : steps) {
