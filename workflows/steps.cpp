@@ -30,6 +30,7 @@ std::span<const StepKind> step_kinds()
                                   energy_step(),
                                   velocity_profile_step(),
                                   snapshot_step(),
+                                  movie_step(),
                                   plot_step(),
                                   panels_step()};
     return kinds;

@@ -31,6 +31,7 @@ StepKind nonaffine_step();
 StepKind uniformity_step();
 StepKind energy_step();
 StepKind snapshot_step();
+StepKind movie_step();
 StepKind plot_step();
 StepKind panels_step();
 
