@@ -122,7 +122,7 @@ TEST(Movie, RefusesWhatIsNoFilm)
 
 TEST(ParticleSeries, CoversTheValuesAndTheParticlesOfAllPictures)
 {
-    const auto near = test::polydata({{{1, 1, 1}, 1, 0.2}, {{3, 1, 1}, 1, 0.4}});
+    const auto near = test::polydata({{{1, 1, 1}, 1, 0.2}, {{10, 1, 1}, 1, 0.4}});
     const auto far = test::polydata({{{1, 1, 1}, 1, 0.2}, {{30, 1, 1}, 1, 3.7}});
     render::ParticleView own = test::bare_view(128, 64);
     own.colour_minimum.reset();
@@ -139,7 +139,7 @@ TEST(ParticleSeries, CoversTheValuesAndTheParticlesOfAllPictures)
     int dark = 0;
     ASSERT_EQ(first.height, second.height);
     for (int row = 0; row < first.height; ++row)
-        for (int column = 0; column < 6; ++column)
+        for (int column = 0; column < 12; ++column)
             for (int c = 0; c < 3; ++c) {
                 EXPECT_EQ(first.pixel(column, row)[c], second.pixel(column, row)[c]);
                 dark += first.pixel(column, row)[c] < 200;

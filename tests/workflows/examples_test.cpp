@@ -119,7 +119,7 @@ TEST_P(Example, GivesTheNumbersThatAreExpected)
 }
 
 INSTANTIATE_TEST_SUITE_P(Gallery, Example, testing::ValuesIn(examples()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& example) { return example.param; });
 
 TEST(Examples, AreAllRunAndAreAllInTheTable)
 {
