@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sigmaflow {
 
@@ -62,7 +61,8 @@ std::span<const SampleField> sample_fields()
          &Sample::frictional_contact_number},
         {"sliding_fraction", "-", "sliding share of the frictional contacts",
          &Sample::sliding_fraction},
-        {"smallest_xi", "-", "smallest reduced gap; minus it is the largest overlap",
+        {"smallest_xi", "-",
+         "smallest reduced gap, at most the range of the forces; minus it is the largest overlap",
          &Sample::smallest_xi},
         {"mean_nonaffine_speed", "-", "mean of |U - U_inf|/(|rate| a)",
          &Sample::mean_nonaffine_speed},
@@ -97,7 +97,8 @@ Sample sample_of(const State& state, const Evaluation& e, const StressSummary& s
     s.contact_number = 2 * static_cast<double>(e.contacts.size()) / n;
     s.frictional_contact_number = 2 * frictional / n;
     s.sliding_fraction = frictional ? static_cast<double>(sliding) / frictional : 0;
-    s.smallest_xi = std::numeric_limits<double>::infinity();
+    // spheres that are all farther apart: infinity could not be stored
+    s.smallest_xi = std::max(e.model.lubrication_range, e.model.repulsion_range);
     for (const PairState& p : e.pairs) s.smallest_xi = std::min(s.smallest_xi, p.pair.xi);
     double speed = 0;
     for (int i = 0; i < state.size(); ++i) speed += nonaffine_speed(e, i);

@@ -196,6 +196,13 @@ vtkSmartPointer<vtkRenderWindow> make_offscreen_window(int width, int height)
     return window;
 }
 
+vtkSmartPointer<vtkRenderWindow> KeptWindow::of_size(int width, int height)
+{
+    if (!window_ || window_->GetSize()[0] != width || window_->GetSize()[1] != height)
+        window_ = make_offscreen_window(width, height);
+    return window_;
+}
+
 Image read_pixels(vtkRenderWindow* window)
 {
     const int* size = window->GetSize();

@@ -21,6 +21,15 @@ namespace sigmaflow::render {
 /// vtkRenderWindow::New() returns in this process. Error: rendering, with the package to install.
 vtkSmartPointer<vtkRenderWindow> make_offscreen_window(int width, int height);
 
+/// The same window for one picture after another, as long as they have one size.
+class KeptWindow {
+public:
+    vtkSmartPointer<vtkRenderWindow> of_size(int width, int height);
+
+private:
+    vtkSmartPointer<vtkRenderWindow> window_;
+};
+
 /// What the window shows after Render().
 Image read_pixels(vtkRenderWindow* window);
 

@@ -237,12 +237,13 @@ struct Passes {
 
 }
 
-Image render_scene(const ParticleScene& scene)
+Image render_scene(const ParticleScene& scene, KeptWindow* kept)
 {
     const VtkMessages messages;
     const int factor = scene.antialiasing ? oversampling : 1;
+    KeptWindow own;
     const auto window =
-        make_offscreen_window(factor * scene.camera.width, factor * scene.camera.height);
+        (kept ? *kept : own).of_size(factor * scene.camera.width, factor * scene.camera.height);
     vtkNew<vtkOpenGLRenderer> renderer;
     renderer->SetBackground(1, 1, 1);
     renderer->AutomaticLightCreationOff();
@@ -263,6 +264,7 @@ Image render_scene(const ParticleScene& scene)
     window->Render();
     Image image = read_pixels(window);
     passes.release(window);
+    window->RemoveRenderer(renderer);
     messages.throw_if_error();
     return factor == 1 ? image : shrink(image, factor);
 }

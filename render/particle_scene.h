@@ -28,7 +28,10 @@ struct ParticleScene {
     bool antialiasing = true;
 };
 
-/// camera.width x camera.height pixels on white. Error: rendering.
-Image render_scene(const ParticleScene& scene);
+class KeptWindow;
+
+/// camera.width x camera.height pixels on white, drawn in the kept window if there is one.
+/// Error: rendering.
+Image render_scene(const ParticleScene& scene, KeptWindow* kept = nullptr);
 
 }

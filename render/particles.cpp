@@ -125,7 +125,8 @@ std::vector<Sphere> contents(const ParticleScene& scene)
 }
 
 /// The scene with its camera, and everything around it.
-Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleView& view)
+Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleView& view,
+                 KeptWindow* window)
 {
     const ParticleLayout layout =
         particle_layout(view.width, view.height, !view.title.empty(), view.colour_bar, view.triad);
@@ -133,8 +134,8 @@ Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleVi
     scene.ambient_occlusion = view.ambient_occlusion;
     scene.antialiasing = view.antialiasing;
     const Rectangle& room = layout.particles;
-    scene.camera = frame_spheres(contents(scene), static_cast<int>(room.width()),
-                                 static_cast<int>(room.height()));
+    scene.camera = frame_spheres(view.seen.empty() ? contents(scene) : view.seen,
+                                 static_cast<int>(room.width()), static_cast<int>(room.height()));
 
     const Fonts fonts;
     Drawing drawing{view.width, view.height, {}};
@@ -143,7 +144,7 @@ Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleVi
     if (!view.title.empty()) draw_title(drawing, fonts, view.title, layout);
 
     Image image(view.width, view.height);
-    const Image spheres = render_scene(scene);
+    const Image spheres = render_scene(scene, window);
     paste(image, spheres, std::lround((room.left + room.right - spheres.width) / 2),
           std::lround((room.top + room.bottom - spheres.height) / 2));
     rasterise(drawing, image);
@@ -176,23 +177,26 @@ std::vector<ColouredRod> strong_rods(vtkPolyData* contacts, const std::vector<do
 
 }
 
-Image render_particles(vtkPolyData* particles, const ParticleView& view)
+ColourValues colour_values(vtkDataSetAttributes* arrays, const std::string& name)
 {
-    check(view);
-    std::vector<double> values;
-    bool whole_numbers = false;
-    if (particles->GetNumberOfPoints() > 0) {
-        vtkDataArray* array = array_of(particles->GetPointData(), view.colour_by, "colour_by");
-        values = magnitudes(array);
-        whole_numbers = holds_whole_numbers(array);
-    }
-    const ColourScale scale = colour_scale(view, values, whole_numbers);
-    ParticleScene scene;
-    scene.spheres = coloured_spheres(particles, values, scale);
-    return picture_of(std::move(scene), scale, view);
+    vtkDataArray* array = array_of(arrays, name, "colour_by");
+    return {magnitudes(array), holds_whole_numbers(array)};
 }
 
-Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const ParticleView& view)
+Image render_particles(vtkPolyData* particles, const ParticleView& view, KeptWindow* window)
+{
+    check(view);
+    ColourValues found;
+    if (particles->GetNumberOfPoints() > 0)
+        found = colour_values(particles->GetPointData(), view.colour_by);
+    const ColourScale scale = colour_scale(view, found.values, found.whole_numbers);
+    ParticleScene scene;
+    scene.spheres = coloured_spheres(particles, found.values, scale);
+    return picture_of(std::move(scene), scale, view, window);
+}
+
+Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const ParticleView& view,
+                    KeptWindow* window)
 {
     check(view);
     constexpr Colour grey{176, 176, 182};
@@ -214,7 +218,7 @@ Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const Particl
     for (const ColouredRod& rod : scene.rods)  // round ends
         for (const Position& end : {rod.from, rod.to})
             scene.spheres.push_back({{end, rod.radius}, rod.colour});
-    return picture_of(std::move(scene), scale, view);
+    return picture_of(std::move(scene), scale, view, window);
 }
 
 }

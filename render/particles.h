@@ -7,12 +7,15 @@
 // Errors: rendering (no driver, no font), input (no such array, unknown colour map, empty colour
 // range, positions not finite, radius <= 0).
 #pragma once
+#include "render/framing.h"
 #include "render/image.h"
 
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
+class vtkDataSetAttributes;
 class vtkPolyData;
 
 namespace sigmaflow::render {
@@ -28,13 +31,26 @@ struct ParticleView {
     bool ambient_occlusion = true;
     bool antialiasing = true;
     bool triad = true, colour_bar = true, outline = true;
+    std::vector<Sphere> seen;  // what the camera shows; default: what is in the picture
 };
 
-Image render_particles(vtkPolyData* particles, const ParticleView& view);
+class KeptWindow;
+
+/// Several pictures of one size are drawn faster in a window that is kept.
+Image render_particles(vtkPolyData* particles, const ParticleView& view,
+                       KeptWindow* window = nullptr);
 
 /// The chains of strong contacts: rods along the lines of `contacts` whose value is above the mean,
 /// coloured and thick by it, between small grey spheres. `colour_by` is a cell array of the
 /// contacts with one component.
-Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const ParticleView& view);
+Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const ParticleView& view,
+                    KeptWindow* window = nullptr);
+
+/// What an array says of colours.
+struct ColourValues {
+    std::vector<double> values;  // lengths of vectors
+    bool whole_numbers = false;
+};
+ColourValues colour_values(vtkDataSetAttributes* arrays, const std::string& name);
 
 }

@@ -50,7 +50,7 @@ double disk_of(const Needs& needs)
     const double particles = needs.particles;
     return needs.frames * particles * bytes::particle_in_frame_on_disk +
            needs.samples * bytes::sample_on_disk + particles * bytes::particle_of_step +
-           needs.drawn_pixels * bytes::drawn_pixel_on_disk +
+           needs.drawn_pictures * needs.drawn_pixels * bytes::drawn_pixel_on_disk +
            needs.plotted_pixels * bytes::plotted_pixel_on_disk + bytes::files_of_step;
 }
 

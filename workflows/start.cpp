@@ -3,6 +3,7 @@
 #include "workflows/pictures.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sigmaflow::workflows {
 
@@ -14,13 +15,16 @@ double largest_radius(const PackingParameters& packing)
     return *std::max_element(packing.radii.begin(), packing.radii.end());
 }
 
-/// Twice the distance up to which two of the largest spheres interact [a].
-double narrowest_box_allowed(const Suspension& suspension, const Model& model)
-{
-    return 2 * largest_radius(suspension.packing) *
-           (2 + std::max(model.lubrication_range, model.repulsion_range));
 }
 
+double narrowest_box_allowed(double largest_radius, const Model& model)
+{
+    return 2 * largest_radius * (2 + std::max(model.lubrication_range, model.repulsion_range));
+}
+
+double as_asked(double volume_fraction)
+{
+    return std::round(volume_fraction * 1e9) / 1e9;
 }
 
 void Start::describe(io::Fields& f)
@@ -50,7 +54,7 @@ void Start::check(const io::JsonNode& node, Plan& plan) const
         plan.suspension.check_volume_fraction(*volume_fraction, *value);
     plan.narrowest_box = packing_box(parameters).minCoeff();
     plan.largest_radius = largest_radius(parameters);
-    const double least = narrowest_box_allowed(plan.suspension, plan.suspension.model);
+    const double least = narrowest_box_allowed(plan.largest_radius, plan.suspension.model);
     if (plan.narrowest_box < least)
         throw node.error("too few particles: the box would be " + short_number(plan.narrowest_box) +
                          " a wide, must be >= " + io::number_text(least) +
@@ -75,7 +79,7 @@ Model checked_model(const io::ModelChanges& changes, const io::JsonNode& step, c
     const auto given = step.find("model");
     if (!given) return model;
     io::check_model(model, *given);
-    if (plan.narrowest_box < narrowest_box_allowed(plan.suspension, model))
+    if (plan.narrowest_box < narrowest_box_allowed(plan.largest_radius, model))
         throw given->error("forces of this range need a wider box, more particles");
     return model;
 }

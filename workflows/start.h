@@ -23,6 +23,12 @@ struct Start {
     void check(const io::JsonNode& node, Plan& plan) const;
 };
 
+/// Twice the distance up to which two of the largest spheres interact [a].
+double narrowest_box_allowed(double largest_radius, const Model& model);
+
+/// A volume fraction computed from spheres and box, which meet to rounding what was asked for.
+double as_asked(double volume_fraction);
+
 /// Nothing if no packing without overlaps is found; `pulse` is called now and then.
 std::optional<State> packed(const PackingParameters& packing, const std::function<void()>& pulse);
 

@@ -46,6 +46,7 @@ struct Needs {
     double samples = 0, frames = 0;               // that it writes
     double frames_read = 0;                       // that it holds in memory
     double drawn_pixels = 0, plotted_pixels = 0;  // of its picture: particles or curves
+    double drawn_pictures = 1;                    // of particles
 
     bool draws() const { return drawn_pixels + plotted_pixels > 0; }
 };

@@ -12,6 +12,7 @@ std::span<const StepKind> step_kinds()
                                   shear_step(),
                                   step_stress_step(),
                                   stored_run_step(),
+                                  stored_state_step(),
                                   flow_curve_step(),
                                   stability_step(),
                                   fluctuations_step(),
@@ -29,6 +30,7 @@ std::span<const StepKind> step_kinds()
                                   energy_step(),
                                   velocity_profile_step(),
                                   snapshot_step(),
+                                  movie_step(),
                                   plot_step(),
                                   panels_step()};
     return kinds;

@@ -12,6 +12,7 @@ StepKind pack_step();
 StepKind equilibrate_step();
 StepKind shear_step();
 StepKind stored_run_step();
+StepKind stored_state_step();
 StepKind flow_curve_step();
 StepKind stability_step();
 StepKind fluctuations_step();
@@ -30,6 +31,7 @@ StepKind nonaffine_step();
 StepKind uniformity_step();
 StepKind energy_step();
 StepKind snapshot_step();
+StepKind movie_step();
 StepKind plot_step();
 StepKind panels_step();
 

@@ -1,10 +1,18 @@
 #include "workflows/suspension.h"
 
 #include "io/model_fields.h"
+#include "io/number_file.h"
 
 #include <nlohmann/json.hpp>
 
 namespace sigmaflow::workflows {
+
+namespace {
+
+constexpr io::Length number_of_radii{2, 1'000'000};
+constexpr io::Range allowed_radii = io::between(0.01, 100);  // [a]
+
+}
 
 io::Field comment_field()
 {
@@ -27,8 +35,12 @@ void Suspension::describe(io::Fields& f)
       "radius of the large spheres; the small ones have radius 1");
     f("small_volume_share", packing.small_volume_share, io::between(0, 1), "-",
       "share of the solid volume in small spheres");
-    f("radii", packing.radii, io::Length{2, 1'000'000}, io::between(0.01, 100), "a",
+    f("radii", packing.radii, number_of_radii, allowed_radii, "a",
       "radii of all spheres, instead of size_ratio and small_volume_share");
+    f("radii_file", radii_file, 4096,
+      "file with the radii of all spheres [a], one a line, instead of radii; what follows a # is "
+      "passed over; relative to the folder of the workflow file")
+        .of_file();
     f("box_shape", packing.box_shape, io::between(0.01, 100), "-",
       "ratios of the box lengths along flow, gradient and vorticity");
     f("seed", packing.seed, "seed of the random packing; the same seed gives the same run");
@@ -38,6 +50,17 @@ void Suspension::describe(io::Fields& f)
 }
 
 namespace {
+
+std::vector<double> read_radii(const std::filesystem::path& file, const io::JsonNode& object)
+{
+    if (object.has("radii"))
+        throw object.error_at_key("radii", "radii_file already says how large the spheres are");
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+        throw object.member("radii_file")
+            .wrong("must be a file, there is none of this name: " + file.string());
+    return io::read_numbers(file, number_of_radii, allowed_radii, "a");
+}
 
 // Given radii replace the mixture.
 void check_radii(PackingParameters& packing, const io::JsonNode& object)
@@ -54,9 +77,12 @@ void check_radii(PackingParameters& packing, const io::JsonNode& object)
 
 }
 
-void Suspension::check(const io::JsonNode& object)
+void Suspension::check(const io::JsonNode& object, const std::filesystem::path& folder)
 {
     if (const auto node = object.find("model")) io::check_model(model, *node);
+    if (!radii_file.empty()) packing.radii = read_radii(folder / radii_file, object);
+    says_particles = object.has("particles") || !packing.radii.empty();
+    says_volume_fraction = object.has("volume_fraction");
     if (!packing.radii.empty()) check_radii(packing, object);
     largest_volume_fraction = random_close_packing(packing_radii(packing));
     if (const auto value = object.find("volume_fraction"))

@@ -4,6 +4,7 @@
 #include "engine/packing.h"
 #include "io/json_fields.h"
 
+#include <filesystem>
 #include <string>
 
 namespace sigmaflow::workflows {
@@ -14,11 +15,14 @@ io::Field comment_field();
 struct Suspension {
     PackingParameters packing;
     Model model;
+    std::string radii_file;  // read by check() into packing.radii
+    bool says_particles = false, says_volume_fraction = false;  // not the default; set by check()
     double largest_volume_fraction = 0;  // random close packing of these spheres, set by check()
 
     void describe(io::Fields& f);
-    /// Combinations that exclude each other. Errors: input, with the position in `object`.
-    void check(const io::JsonNode& object);
+    /// Combinations that exclude each other; reads the file of radii, whose path counts from
+    /// `folder`. Errors: input, with the position in `object` or the line of that file.
+    void check(const io::JsonNode& object, const std::filesystem::path& folder);
     /// Error(input) at `value` if the spheres have no random packing at a volume fraction.
     void check_volume_fraction(double volume_fraction, const io::JsonNode& value) const;
 };

@@ -130,7 +130,7 @@ Workflow checked_workflow(const io::JsonDocument& document, const std::filesyste
         if (const auto node = root.find(field.name)) field.read(*node);
         if (root.has("suspension") ||
             (!begins_with_a_stored_run(root) && !root.misspells("suspension", known)))
-            suspension.check(root.member("suspension"));
+            suspension.check(root.member("suspension"), path.parent_path());
     };
     for (const io::Field& field : workflow_fields(workflow, schema)) {
         if (field.name != "suspension") {
@@ -238,9 +238,15 @@ Json written_workflow(const Workflow& workflow,
     io::Fields f;
     workflow.suspension->describe(f);
     Json& suspension = result["suspension"] = io::write_fields(f.list());
+    suspension.erase("radii_file");  // its numbers are among the radii
     if (!workflow.suspension->packing.radii.empty()) {  // these exclude each other
         suspension.erase("size_ratio");
         suspension.erase("small_volume_share");
+    }
+    if (!workflow.steps.empty() && workflow.steps.front().kind == "stored_state") {
+        // the file says them
+        if (!workflow.suspension->says_particles) suspension.erase("particles");
+        if (!workflow.suspension->says_volume_fraction) suspension.erase("volume_fraction");
     }
     Json& list = result["steps"] = Json::array();
     for (const Step& step : workflow.steps) {

@@ -36,7 +36,8 @@ TEST(Workflow, ResolvedParametersAreAWorkflowThatResolvesToItself)
 {
     for (const auto& file : shipped_workflows()) {
         const Json once = read_workflow(file).resolved();
-        const Json twice = parse_workflow(once.dump(), "resolved.json").resolved();
+        const Json twice =
+            parse_workflow(once.dump(), file.parent_path() / "resolved.json").resolved();
         EXPECT_EQ(once, twice) << file;
     }
 }

@@ -2,9 +2,8 @@
 #include "engine/archive.h"
 #include "io/guarded.h"
 #include "workflows/averages.h"
+#include "workflows/start.h"
 #include "workflows/steps.h"
-
-#include <cmath>
 
 namespace sigmaflow::workflows {
 
@@ -18,12 +17,6 @@ bool ended_jammed(const io::StoredRun& stored)
     const auto* stress = std::get_if<ImposedStress>(&stored.control);
     return stress && !stored.series.empty() &&
            stored.series.back().shear_rate * jammed_viscosity < stress->value;
-}
-
-/// As it was asked for: spheres and box meet it to rounding.
-double asked(double volume_fraction)
-{
-    return std::round(volume_fraction * 1e9) / 1e9;
 }
 
 /// The last sample of a run that ended early is not at a multiple of the interval.
@@ -60,7 +53,7 @@ struct StoredRunStep {
         plan.runs.push_back({.name = plan.step_name,
                              .control = summary.control,
                              .particles = static_cast<int>(summary.particles),
-                             .volume_fraction = asked(summary.volume_fraction),
+                             .volume_fraction = as_asked(summary.volume_fraction),
                              .narrowest_box = summary.narrowest_box,
                              .largest_radius = summary.largest_radius,
                              .strain = summary.strain,
@@ -95,7 +88,7 @@ struct StoredRunStep {
         keep_equal_intervals(stored.series);
         Run run{.name = context.step_name,
                 .control = stored.control,
-                .volume_fraction = asked(stored.frames.front().volume_fraction),
+                .volume_fraction = as_asked(stored.frames.front().volume_fraction),
                 .particles = stored.frames.front().state.size(),
                 .file = std::filesystem::absolute(path),
                 .series = std::move(stored.series),
