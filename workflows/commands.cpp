@@ -8,8 +8,9 @@ namespace sigmaflow::workflows {
 
 std::span<const Command> commands()
 {
-    static const std::array list{run_command(), validate_command(), evaluate_command(),
-                                 report_command(), steps_command()};
+    static const std::array list{run_command(),      sweep_command(),    collect_command(),
+                                 validate_command(), evaluate_command(), report_command(),
+                                 steps_command()};
     return list;
 }
 

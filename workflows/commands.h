@@ -32,6 +32,8 @@ Command validate_command();
 Command evaluate_command();
 Command report_command();
 Command steps_command();
+Command sweep_command();
+Command collect_command();
 
 inline constexpr std::string_view program_summary =
     "sigmaflow: dense frictional suspensions sheared at an imposed stress";

@@ -1,0 +1,159 @@
+#include "workflows/sweep_run.h"
+
+#include "workflows/collect.h"
+#include "workflows/interruption.h"
+#include "workflows/point_status.h"
+#include "workflows/pool.h"
+#include "workflows/progress.h"
+
+#include <algorithm>
+#include <ostream>
+#include <thread>
+
+namespace sigmaflow::workflows {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<Job> jobs_of(const SweepFolder& sweep, const std::vector<std::size_t>& points,
+                         const SweepOptions& options)
+{
+    const fs::path program = fs::read_symlink("/proc/self/exe"), folder = fs::absolute(sweep.path);
+    std::vector<Job> jobs;
+    for (const std::size_t k : points) {
+        Job job{.command = run_arguments(sweep.points[k]),
+                .folder = folder,
+                .log = fs::absolute(sweep.log_of(sweep.points[k]))};
+        job.command.insert(job.command.begin(), program.string());
+        job.command.insert(job.command.end(),
+                           {"--threads", std::to_string(options.threads), "--checkpoint-interval",
+                            io::number_text(options.checkpoint_interval)});
+        jobs.push_back(std::move(job));
+    }
+    return jobs;
+}
+
+std::size_t width_of(const SweepOptions& options)
+{
+    if (options.jobs > 0) return static_cast<std::size_t>(options.jobs);
+    const auto threads = static_cast<unsigned>(options.threads);
+    return std::max(1U, std::thread::hardware_concurrency() / threads);
+}
+
+/// One view of all points.
+class View {
+public:
+    View(const SweepFolder& sweep, std::vector<std::size_t> points, bool quiet)
+        : sweep_(sweep),
+          points_(std::move(points)),
+          told_(points_.size(), false),
+          progress_(Progress::for_stderr(quiet))
+    {
+        const std::size_t finished = sweep_.points.size() - points_.size();
+        progress_.note("sweep of " + std::to_string(sweep_.points.size()) + " points in " +
+                       sweep_.path.string() +
+                       (finished ? ", " + std::to_string(finished) + " of an earlier run" : ""));
+        progress_.begin("sweep");
+    }
+
+    void show(const PoolState& state)
+    {
+        for (std::size_t k = 0; k < points_.size(); ++k)
+            if (state.codes[k] && !told_[k]) tell(k, *state.codes[k]);
+        const std::size_t all = sweep_.points.size(), left = points_.size() - state.ended;
+        const double done = static_cast<double>(all - left) / static_cast<double>(all);
+        progress_.update(done, std::to_string(all - left - failed_) + " done, " +
+                                   std::to_string(state.running) + " running, " +
+                                   std::to_string(failed_) + " failed, " +
+                                   std::to_string(left - state.running) + " left");
+    }
+
+    void end(const std::string& result) { progress_.end(result); }
+
+private:
+    void tell(std::size_t k, int code)
+    {
+        told_[k] = true;
+        if (code == 0 || code == static_cast<int>(ErrorKind::interrupted)) return;
+        ++failed_;
+        const Point& point = sweep_.points[points_[k]];
+        progress_.note(point.name + ": failed, exit code " + std::to_string(code) + ", see " +
+                       sweep_.log_of(point).string());
+    }
+
+    const SweepFolder& sweep_;
+    std::vector<std::size_t> points_;
+    std::vector<bool> told_;
+    std::size_t failed_ = 0;
+    Progress progress_;
+};
+
+/// After all points that could run have run.
+void throw_worst(const SweepFolder& sweep, const std::vector<PointStatus>& status,
+                 const std::optional<std::string>& asked)
+{
+    const PointStatus* worst = nullptr;
+    std::size_t failed = 0, worst_point = 0;
+    bool unfinished = false;
+    for (std::size_t k = 0; k < status.size(); ++k) {
+        unfinished = unfinished || (status[k].state != PointState::complete &&
+                                    status[k].state != PointState::failed);
+        if (status[k].state != PointState::failed) continue;
+        ++failed;
+        if (worst && *worst->exit_code >= *status[k].exit_code) continue;
+        worst = &status[k];
+        worst_point = k;
+    }
+    if (unfinished)
+        throw Error(ErrorKind::interrupted, asked.value_or("a point was stopped"),
+                    count_text(status) + "; the same command goes on");
+    if (!worst) return;
+    throw Error(static_cast<ErrorKind>(*worst->exit_code), sweep.path.string(),
+                std::to_string(failed) + " of " + std::to_string(status.size()) +
+                    " points failed, all others are complete; the worst, " +
+                    sweep.points[worst_point].name + ": " +
+                    (worst->message.empty() ? "exit code " + std::to_string(*worst->exit_code)
+                                            : worst->message));
+}
+
+void run_here(const SweepFolder& sweep, const std::vector<std::size_t>& points,
+              const SweepOptions& options, std::ostream& results)
+{
+    const Interruption interruption(options.wall_time);
+    const std::vector<Job> jobs = jobs_of(sweep, points, options);
+    View view(sweep, points, options.quiet);
+    std::optional<std::string> asked;
+    run_pool(
+        jobs, width_of(options), static_cast<int>(ErrorKind::locked),
+        [&] {
+            if (!asked) asked = interruption.asked();
+            return asked.has_value();
+        },
+        [&](const PoolState& state) { view.show(state); });
+    const std::vector<PointStatus> status = read_status(sweep);
+    view.end(count_text(status));
+    results << collect_sweep(sweep, status, options.quantity) << std::flush;
+    throw_worst(sweep, status, asked);
+}
+
+}
+
+void run_sweep(const SweepOptions& options, std::ostream& results, std::ostream& complaints)
+{
+    SweepFolder sweep = planned_sweep(options, complaints);
+    const SweepLock lock(sweep.path);
+    if (holds_sweep(sweep.path)) {
+        const SweepFolder before = read_sweep(sweep.path);
+        refuse_other_sweep(before, sweep);
+        sweep.source = before.source;
+    }
+    write_sweep(sweep);
+    const std::vector<PointStatus> status = read_status(sweep);
+    std::vector<std::size_t> points;
+    for (std::size_t k = 0; k < status.size(); ++k)
+        if (status[k].state != PointState::complete) points.push_back(k);
+    run_here(sweep, points, options, results);
+}
+
+}
