@@ -23,9 +23,7 @@ std::string failures(const SweepFolder& sweep, const std::vector<PointStatus>& s
     std::string text;
     for (std::size_t k = 0; k < status.size(); ++k)
         if (status[k].state == PointState::failed)
-            text += "failed: " + sweep.points[k].name + ": exit code " +
-                    std::to_string(*status[k].exit_code) +
-                    (status[k].message.empty() ? "" : ", " + status[k].message) + "\n";
+            text += "failed: " + sweep.points[k].name + ": " + failure_text(status[k]) + "\n";
     return text;
 }
 

@@ -84,11 +84,12 @@ PointStatus status_of(const fs::path& folder, const fs::path& log,
         status.steps = summary["steps"];
     const std::string text = end_of(log);
     const auto code = exit_code_in(text);
+    const bool stopped = code == interrupted_code || code == 128 + SIGTERM || code == 128 + SIGUSR1;
     if (is_locked(folder, locked)) {
         status.state = PointState::running;
     } else if (said == "complete") {
         status.state = PointState::complete;
-    } else if (code == interrupted_code || code == 128 + SIGTERM) {
+    } else if (stopped) {
         status.state = PointState::interrupted;
     } else if (code && *code != 0) {
         status.state = PointState::failed;
@@ -130,6 +131,13 @@ std::string count_text(const std::vector<PointStatus>& status)
         text += word_of(state);
     }
     return text.empty() ? "no points" : text;
+}
+
+std::string failure_text(const PointStatus& status)
+{
+    const std::string code =
+        status.exit_code ? "exit code " + std::to_string(*status.exit_code) : "";
+    return code + (code.empty() || status.message.empty() ? "" : ", ") + status.message;
 }
 
 std::string last_error_in(const std::string& log)

@@ -18,6 +18,7 @@ struct PointStatus {
     PointState state = PointState::waiting;
     std::optional<int> exit_code;                                     // of a failed point
     std::string message;                                              // what it said then
+    bool queued = false;                                              // waits or runs in Slurm
     nlohmann::ordered_json steps = nlohmann::ordered_json::object();  // of its summary.json
 };
 
@@ -26,6 +27,9 @@ std::vector<PointStatus> read_status(const SweepFolder& sweep);
 
 /// "5 complete, 1 failed, 2 running, 1 waiting": what there is of each.
 std::string count_text(const std::vector<PointStatus>& status);
+
+/// "exit code 70, <message>" of a failed point.
+std::string failure_text(const PointStatus& status);
 
 /// The last message of an error in a log, without "sigmaflow: error: ".
 std::string last_error_in(const std::string& log);

@@ -160,7 +160,7 @@ std::optional<render::Plot> sweep_figure(const SweepFolder& sweep, const SweepTa
     plot.series = curves(sweep, table, column, x);
     if (plot.series.empty()) return std::nullopt;
     const auto unit = table.units.find(column);
-    plot.title = spaced(column.substr(0, column.find('.')));
+    plot.title = sweep.workflow.value("name", "") + ": " + column.substr(0, column.find('.'));
     plot.y.title = axis_title(quantity_of(column), unit == table.units.end() ? "" : unit->second);
     std::vector<double> all_x, all_y;
     for (const render::Series& series : plot.series) {

@@ -5,6 +5,8 @@
 #include "workflows/point_status.h"
 #include "workflows/pool.h"
 #include "workflows/progress.h"
+#include "workflows/slurm.h"
+#include "workflows/snakemake.h"
 
 #include <algorithm>
 #include <ostream>
@@ -112,9 +114,7 @@ void throw_worst(const SweepFolder& sweep, const std::vector<PointStatus>& statu
     throw Error(static_cast<ErrorKind>(*worst->exit_code), sweep.path.string(),
                 std::to_string(failed) + " of " + std::to_string(status.size()) +
                     " points failed, all others are complete; the worst, " +
-                    sweep.points[worst_point].name + ": " +
-                    (worst->message.empty() ? "exit code " + std::to_string(*worst->exit_code)
-                                            : worst->message));
+                    sweep.points[worst_point].name + ": " + failure_text(*worst));
 }
 
 void run_here(const SweepFolder& sweep, const std::vector<std::size_t>& points,
@@ -137,6 +137,26 @@ void run_here(const SweepFolder& sweep, const std::vector<std::size_t>& points,
     throw_worst(sweep, status, asked);
 }
 
+/// Numbers of the points that are neither complete nor in a queue.
+std::vector<std::size_t> points_left(const std::vector<PointStatus>& status)
+{
+    std::vector<std::size_t> points;
+    for (std::size_t k = 0; k < status.size(); ++k)
+        if (status[k].state != PointState::complete && !status[k].queued) points.push_back(k);
+    return points;
+}
+
+void refuse_queued(const SweepFolder& sweep, const std::vector<PointStatus>& status)
+{
+    const auto count = std::count_if(status.begin(), status.end(),
+                                     [](const PointStatus& one) { return one.queued; });
+    if (count > 0)
+        throw Error(ErrorKind::locked, sweep.path.string(),
+                    std::to_string(count) +
+                        " points wait or run in Slurm: cancel them there first, or use --engine "
+                        "slurm");
+}
+
 }
 
 void run_sweep(const SweepOptions& options, std::ostream& results, std::ostream& complaints)
@@ -149,11 +169,20 @@ void run_sweep(const SweepOptions& options, std::ostream& results, std::ostream&
         sweep.source = before.source;
     }
     write_sweep(sweep);
-    const std::vector<PointStatus> status = read_status(sweep);
-    std::vector<std::size_t> points;
-    for (std::size_t k = 0; k < status.size(); ++k)
-        if (status[k].state != PointState::complete) points.push_back(k);
-    run_here(sweep, points, options, results);
+    std::vector<PointStatus> status = read_status(sweep);
+    add_slurm_states(sweep, status);
+    const Engine engine =
+        options.engine.value_or(was_submitted(sweep) ? Engine::slurm : Engine::local);
+    const std::vector<std::size_t> points = points_left(status);
+    if (engine == Engine::slurm) {
+        results << count_text(status) << "\n" << write_slurm_job(sweep, points, options);
+        return;
+    }
+    refuse_queued(sweep, status);
+    if (engine == Engine::snakemake)
+        results << write_snakefile(sweep, options);
+    else
+        run_here(sweep, points, options, results);
 }
 
 }

@@ -14,7 +14,7 @@ struct SweepOptions {
     std::optional<std::filesystem::path> out;  // default: out/<name of the file>_sweep
     std::vector<std::string> swept, settings;  // of --sweep and --set
     std::optional<int> repeats;
-    Engine engine = Engine::local;
+    std::optional<Engine> engine;     // default: local, or Slurm if the sweep was submitted
     int jobs = 0;                     // at a time; 0: cores over threads, or no limit in Slurm
     int threads = 1;                  // of each point
     double checkpoint_interval = 30;  // [s]

@@ -2,6 +2,7 @@
 #include "workflows/collect.h"
 
 #include "workflows/commands.h"
+#include "workflows/slurm.h"
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -22,7 +23,9 @@ Work declare(CLI::App& app)
                    "column of the table that is drawn, default the viscosity of the last run");
     return [given] {
         const SweepFolder sweep = read_sweep(given->folder);
-        print_result(collect_sweep(sweep, read_status(sweep), given->quantity));
+        std::vector<PointStatus> status = read_status(sweep);
+        add_slurm_states(sweep, status);
+        print_result(collect_sweep(sweep, status, given->quantity));
     };
 }
 

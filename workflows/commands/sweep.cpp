@@ -14,7 +14,7 @@ namespace {
 
 struct SweepArguments {
     SweepOptions options;
-    std::string out, wall_time, engine = "local";
+    std::string out, wall_time, engine;
     int repeats = 1;
     bool no_submit = false;
 };
@@ -50,9 +50,9 @@ void declare_how(CLI::App& app, SweepArguments& given)
 {
     SweepOptions& options = given.options;
     app.add_option("--engine", given.engine,
-                   "local: processes on this machine; slurm: a job array; snakemake: a Snakefile")
-        ->check(CLI::IsMember({"local", "slurm", "snakemake"}))
-        ->default_val("local");
+                   "local: processes on this machine; slurm: a job array; snakemake: a "
+                   "Snakefile. Default: local, or slurm where it was submitted before")
+        ->check(CLI::IsMember({"local", "slurm", "snakemake"}));
     app.add_option("--jobs", options.jobs,
                    "points at a time, default: one per core (Slurm decides itself)")
         ->check(CLI::Range(1, 100'000));
@@ -90,9 +90,10 @@ Work declare(CLI::App& app)
                             "must be a time as 5400, 90m, 2h or D-HH:MM:SS, got \"" +
                                 given->wall_time + "\"");
         }
-        chosen.engine = engine_named(given->engine);
+        if (app.count("--engine")) chosen.engine = engine_named(given->engine);
         chosen.submit = !given->no_submit;
-        if (chosen.engine != Engine::slurm && (given->no_submit || app.count("--slurm-options")))
+        if (chosen.engine.value_or(Engine::slurm) != Engine::slurm &&
+            (given->no_submit || app.count("--slurm-options")))
             throw Error(ErrorKind::usage, given->no_submit ? "--no-submit" : "--slurm-options",
                         "needs --engine slurm");
         run_sweep(chosen, std::cout, std::cerr);
