@@ -78,6 +78,7 @@ Json jobs_of(const SweepFolder& sweep)
         const std::string id = job.member("id").text();
         if (id.empty() || id.find_first_not_of("0123456789") != std::string::npos)
             throw job.member("id").wrong("must be the number of a job");
+        job.member("options").text();
         for (const io::JsonNode& point : job.member("points").elements()) point.text();
     }
     return Json::parse(document.text());
@@ -181,19 +182,21 @@ std::string write_slurm_job(const SweepFolder& sweep, const std::vector<std::siz
     if (options.slurm_options.find('\n') != std::string::npos)
         throw Error(ErrorKind::usage, "--slurm-options", "must be one line");
     if (points.empty()) return "no point is left to be submitted\n";
+    Json jobs = jobs_of(sweep);
+    SweepOptions now = options;
+    if (now.slurm_options.empty() && !jobs.empty())
+        now.slurm_options = jobs.back()["options"].get<std::string>();
     std::error_code error;
     fs::create_directories(sweep.path / folder_name, error);
     const fs::path script = sweep.path / folder_name / "job.sh";
-    io::write_file(script,
-                   slurm_script(sweep, points, options, fs::read_symlink("/proc/self/exe")));
+    io::write_file(script, slurm_script(sweep, points, now, fs::read_symlink("/proc/self/exe")));
     if (!options.submit)
         return "job for " + std::to_string(points.size()) + " points in " + script.string() +
                "; submit it with: sbatch " + shell_line({script.string()}) + "\n";
-    Json jobs = jobs_of(sweep);
     const std::string id = submit(script);
     Json names = Json::array();
     for (const std::size_t k : points) names.push_back(sweep.points[k].name);
-    jobs.push_back({{"id", id}, {"points", names}});
+    jobs.push_back({{"id", id}, {"options", now.slurm_options}, {"points", names}});
     io::write_file(jobs_file(sweep), jobs.dump(2) + "\n");
     return "job " + id + " with " + std::to_string(points.size()) +
            " points submitted; how far they are: sigmaflow collect " +

@@ -4,7 +4,8 @@
 // SIGUSR1 two minutes before the end of its time or by SIGTERM when it is preempted, hands that on
 // to its point, which stores a checkpoint and ends with exit code 3; then the task puts itself back
 // into the queue, unless Slurm has already done so or the job was cancelled. Tasks can be run any
-// number of times. slurm/jobs.json remembers which job has which points.
+// number of times. slurm/jobs.json remembers which job has which points and
+// the options for sbatch, which the next one has as well if it is given none.
 #pragma once
 #include "workflows/point_status.h"
 #include "workflows/sweep_run.h"

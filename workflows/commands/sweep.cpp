@@ -92,8 +92,7 @@ Work declare(CLI::App& app)
         }
         if (app.count("--engine")) chosen.engine = engine_named(given->engine);
         chosen.submit = !given->no_submit;
-        if (chosen.engine.value_or(Engine::slurm) != Engine::slurm &&
-            (given->no_submit || app.count("--slurm-options")))
+        if (chosen.engine != Engine::slurm && (given->no_submit || app.count("--slurm-options")))
             throw Error(ErrorKind::usage, given->no_submit ? "--no-submit" : "--slurm-options",
                         "needs --engine slurm");
         run_sweep(chosen, std::cout, std::cerr);
