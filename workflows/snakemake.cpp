@@ -27,8 +27,10 @@ std::string snakefile(const SweepFolder& sweep, const SweepOptions& options,
         text += "    " + python_text(point.name) + ": " +
                 python_text(shell_line(run_arguments(point))) + ",\n";
     text +=
-        "}\n\nrule table:\n    input: expand(\"points/{point}.done\", point=POINTS)\n"
-        "    output: \"table.csv\"\n    params: program=" +
+        "}\nDONE = expand(\"points/{point}.done\", point=POINTS)\n\n"
+        "rule all:\n    input: DONE, \"table.done\"\n\n"
+        "rule table:\n    input: DONE\n    output: touch(\"table.done\")\n"
+        "    params: program=" +
         python_text(sigmaflow) +
         "\n    shell: \"{params.program} collect .\"\n\n"
         "rule point:\n    output: touch(\"points/{point}.done\")\n"
