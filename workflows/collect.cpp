@@ -53,7 +53,7 @@ std::string collect_sweep(const SweepFolder& sweep, const std::vector<PointStatu
     const std::string figure = draw(sweep, table, quantity);
     return count_text(status) + "\n" + failures(sweep, status) + "table in " +
            (sweep.path / "table.csv").string() + "\n" +
-           (figure.empty() ? "no figure, no point has a number to draw yet\n"
+           (figure.empty() ? "no figure, there is nothing to draw yet\n"
                            : "figure in " + figure + ".png, .svg\n");
 }
 

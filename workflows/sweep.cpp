@@ -24,6 +24,16 @@ Error wrong_usage(const std::string& option, const std::string& text, const std:
     return Error(ErrorKind::usage, option, problem + ", got " + io::in_quotes(text));
 }
 
+bool is_utf8(const std::string& text)
+{
+    try {
+        static_cast<void>(Json(text).dump());
+        return true;
+    } catch (const Json::type_error&) {
+        return false;
+    }
+}
+
 Json json_value(const std::string& text)
 {
     const Json value = Json::parse(text, nullptr, false);
@@ -166,6 +176,14 @@ std::vector<Point> combinations(const Sweep& sweep)
     return points;
 }
 
+/// JSON holds no other paths.
+std::string absolute_path(const std::filesystem::path& file)
+{
+    std::string path = std::filesystem::absolute(file).lexically_normal().string();
+    if (!is_utf8(path)) throw Error(ErrorKind::input, path, "is no path in UTF-8");
+    return path;
+}
+
 }
 
 Swept parse_swept(const std::string& text)
@@ -196,6 +214,7 @@ io::Override parse_setting(const std::string& option, const std::string& text)
                           option == "--set"
                               ? "must be a place and its value, as /steps/1/stress=2"
                               : "must be a place and its values, as /steps/1/stress=0.5,1,2");
+    if (!is_utf8(text)) throw Error(ErrorKind::usage, option, "must be UTF-8");
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
@@ -255,7 +274,7 @@ void freeze_paths(Json& value, const std::filesystem::path& folder)
         const bool may_be_path =
             text.find_first_of("./") != std::string::npos && text.size() < 4096;
         if (may_be_path && std::filesystem::is_regular_file(folder / text, error))
-            value = std::filesystem::absolute(folder / text).lexically_normal().string();
+            value = absolute_path(folder / text);
     }
 }
 

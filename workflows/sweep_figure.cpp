@@ -122,7 +122,7 @@ std::vector<render::Series> curves(const SweepFolder& sweep, const SweepTable& t
             it->label = label;
             it->marker = render::Marker::circle;
         }
-        it->x.push_back(names.empty() ? 1 : place_of(sweep.sweep.swept[x], row.at(names[x])));
+        it->x.push_back(place_of(sweep.sweep.swept[x], row.at(names[x])));
         it->y.push_back(y);
         it->y_error.push_back(std::isfinite(error) ? error : 0);
     }
@@ -155,6 +155,7 @@ std::string drawn_column(const SweepTable& table, const std::string& wanted)
 std::optional<render::Plot> sweep_figure(const SweepFolder& sweep, const SweepTable& table,
                                          const std::string& column)
 {
+    if (sweep.sweep.swept.empty()) return std::nullopt;  // repeats of one point are no curve
     render::Plot plot = PictureSize().plot();
     const std::size_t x = abscissa(sweep.sweep);
     plot.series = curves(sweep, table, column, x);
@@ -169,7 +170,6 @@ std::optional<render::Plot> sweep_figure(const SweepFolder& sweep, const SweepTa
     }
     plot.x.logarithmic = is_wide(all_x);
     plot.y.logarithmic = is_wide(all_y);
-    if (sweep.sweep.swept.empty()) return plot;
     const Swept& swept = sweep.sweep.swept[x];
     plot.x.title = axis_title(labels(sweep.sweep.swept)[x], "");
     if (!swept.values.front().is_number()) {

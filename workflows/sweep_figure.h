@@ -14,7 +14,8 @@ std::string drawn_column(const SweepTable& table, const std::string& wanted);
 
 /// Against the first swept parameter with numbers, or the numbers 1, 2, ... of its values, one
 /// curve for each combination of the other parameters. Logarithmic axes where all is positive and
-/// spans a factor of ten. Nothing: no point has a number yet.
+/// spans a factor of ten. Nothing: no point has a number yet, or nothing
+/// is swept.
 std::optional<render::Plot> sweep_figure(const SweepFolder& sweep, const SweepTable& table,
                                          const std::string& column);
 

@@ -207,7 +207,8 @@ void write_sweep(const SweepFolder& sweep)
         throw Error(ErrorKind::file, (sweep.path / points_name).string(),
                     "cannot make the folder: " + error.message());
     io::write_file(sweep.path / frozen_name, sweep.workflow.dump(2) + "\n");
-    io::write_file(sweep.path / sweep_name, json_of(sweep).dump(2) + "\n");
+    io::write_file(sweep.path / sweep_name,
+                   json_of(sweep).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void refuse_other_sweep(const SweepFolder& before, const SweepFolder& now)
