@@ -1,12 +1,14 @@
 #include "workflows/sweep_run.h"
 
 #include "workflows/collect.h"
+#include "workflows/forecast.h"
 #include "workflows/interruption.h"
 #include "workflows/point_status.h"
 #include "workflows/pool.h"
 #include "workflows/progress.h"
 #include "workflows/slurm.h"
 #include "workflows/snakemake.h"
+#include "workflows/workflow.h"
 
 #include <algorithm>
 #include <ostream>
@@ -36,11 +38,38 @@ std::vector<Job> jobs_of(const SweepFolder& sweep, const std::vector<std::size_t
     return jobs;
 }
 
-std::size_t width_of(const SweepOptions& options)
+/// [B], of the point that needs most.
+double largest_memory(const SweepFolder& sweep, const std::vector<std::size_t>& points)
 {
-    if (options.jobs > 0) return static_cast<std::size_t>(options.jobs);
+    double largest = 0;
+    const fs::path file = sweep.path / frozen_name;
+    for (const std::size_t k : points) {
+        const auto document = io::JsonDocument::read(file, sweep.points[k].overrides);
+        largest = std::max(largest, forecast(read_workflow(document, file)).memory);
+    }
+    return largest;
+}
+
+/// As many points at a time as there are cores and memory for, or as the options say. Error(input)
+/// if these do not have room.
+std::size_t width_of(const SweepFolder& sweep, const std::vector<std::size_t>& points,
+                     const SweepOptions& options)
+{
     const auto threads = static_cast<unsigned>(options.threads);
-    return std::max(1U, std::thread::hardware_concurrency() / threads);
+    const auto wanted = options.jobs > 0
+                            ? static_cast<std::size_t>(options.jobs)
+                            : std::max(1U, std::thread::hardware_concurrency() / threads);
+    const std::size_t width = std::max<std::size_t>(1, std::min(wanted, points.size()));
+    const double each = largest_memory(sweep, points);
+    const Room room = room_here(sweep.path);
+    if (!room.memory || each * static_cast<double>(width) <= *room.memory) return width;
+    const auto fit = static_cast<std::size_t>(*room.memory / each);
+    if (options.jobs > 0 && width > 1)
+        throw Error(ErrorKind::input, "--jobs",
+                    "must be <= " + std::to_string(std::max<std::size_t>(1, fit)) +
+                        ", there is no memory for more points at a time, got " +
+                        std::to_string(options.jobs));
+    return std::max<std::size_t>(1, fit);  // a point that is too large says so itself
 }
 
 /// One view of all points.
@@ -121,11 +150,12 @@ void run_here(const SweepFolder& sweep, const std::vector<std::size_t>& points,
               const SweepOptions& options, std::ostream& results)
 {
     const Interruption interruption(options.wall_time);
+    const std::size_t width = width_of(sweep, points, options);
     const std::vector<Job> jobs = jobs_of(sweep, points, options);
     View view(sweep, points, options.quiet);
     std::optional<std::string> asked;
     run_pool(
-        jobs, width_of(options), static_cast<int>(ErrorKind::locked),
+        jobs, width, static_cast<int>(ErrorKind::locked),
         [&] {
             if (!asked) asked = interruption.asked();
             return asked.has_value();

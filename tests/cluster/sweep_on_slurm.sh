@@ -88,7 +88,7 @@ done
 # --- the sweep
 cat >flow.json <<END
 {"suspension": {"particles": 60, "volume_fraction": 0.5, "seed": 7},
- "steps": [{"step": "pack"}, {"step": "shear", "stress": 2, "strain": 10}, {"step": "plot"}]}
+ "steps": [{"step": "pack"}, {"step": "shear", "stress": 2, "strain": 40}, {"step": "plot"}]}
 END
 swept="--sweep /steps/1/stress=1,2,4,8"
 "$sigmaflow" sweep flow.json $swept --out here -q || fail "the sweep without Slurm"
@@ -151,4 +151,17 @@ for file in $(files here); do
     cmp "here/points/$file" "there/points/$file" || fail "$file differs"
 done
 cmp here/table.csv there/table.csv || fail "the tables differ"
+# --- a cancelled job stays so, and what it leaves can be run here
+"$sigmaflow" sweep there --sweep /steps/1/stress=16 --checkpoint-interval 0.2 >said || fail "one more value"
+job=$(sed -n 's/^job \([0-9]*\) .*/\1/p' said)
+[ "$(grep -c -- --time=10 there/slurm/job.sh)" = 1 ] || fail "the options were forgotten"
+await "${job}_1" RUNNING
+for ((k = 0; k < 200; ++k)); do [ -e there/points/stress_16/shear/series.csv ] && break; sleep 0.1; done
+scancel "$job"
+for ((k = 0; k < 600; ++k)); do [ -z "$(squeue -h -j "$job" 2>/dev/null)" ] && break; sleep 0.1; done
+"$sigmaflow" collect there | tee said
+grep -q "^4 complete, 1 interrupted" said || fail "the cancelled point is not interrupted"
+"$sigmaflow" sweep there --engine local -q || fail "going on here"
+grep -q "goes on from strain" there/points/stress_16.log || fail "the cancelled point began anew"
+
 echo "all points have the same bytes as without Slurm"

@@ -14,7 +14,7 @@ cd "$folder"
 export XDG_CACHE_HOME=$folder/cache
 cat >flow.json <<END
 {"suspension": {"particles": 40, "volume_fraction": 0.5, "seed": 7},
- "steps": [{"step": "pack"}, {"step": "shear", "stress": 2, "strain": 8}, {"step": "plot"}]}
+ "steps": [{"step": "pack"}, {"step": "shear", "stress": 2, "strain": 20}, {"step": "plot"}]}
 END
 swept="--sweep /steps/1/stress=1,2,4,8"
 "$sigmaflow" sweep flow.json $swept --out here -q || fail "the sweep without snakemake"

@@ -1,6 +1,7 @@
 // Sweeps: the points, what is refused, failures, kills, the table.
 #include "workflows/sweep.h"
 
+#include "tests/support/sanitized.h"
 #include "tests/workflows/program.h"
 #include "workflows/slurm.h"
 
@@ -379,7 +380,7 @@ TEST_F(SweepOfRuns, RepeatsHaveSeedsOfTheirOwnAndErrorsFromTheirScatter)
 
 TEST_F(SweepOfRuns, KilledOrStoppedGoesOnToTheSameBytes)
 {
-    write_flow("4");
+    write_flow("6");
     const std::string options = "--sweep /steps/1/stress=1,2,4 --checkpoint-interval 0.05 -q";
     ASSERT_EQ(run("sweep w.json --out whole " + options).exit_code, 0);
     for (const int sent : {SIGKILL, SIGTERM}) {
@@ -410,6 +411,18 @@ TEST_F(SweepOfRuns, KilledOrStoppedGoesOnToTheSameBytes)
         EXPECT_EQ(results(name), results("whole"));
         EXPECT_EQ(text_of(folder / name / "table.csv"), text_of(folder / "whole/table.csv"));
     }
+}
+
+TEST_F(SweepOfRuns, RunsNoMorePointsAtATimeThanThereIsMemoryFor)
+{
+    if (sanitized) GTEST_SKIP() << "sanitizers take address space";
+    const std::string limit = "prlimit --as=300000000 ";  // 300 MB; a point needs about 50 MB
+    const std::string points = "sweep w.json --sweep /steps/1/stress=1:8:8 -q --out ";
+    const auto limited = [&](const std::string& arguments) { return run(arguments, limit); };
+    const Said many = limited(points + "s --jobs 8");
+    EXPECT_EQ(many.exit_code, 65) << many.err;
+    expect_in(many.err, "--jobs: must be <= ");
+    EXPECT_EQ(limited(points + "t").exit_code, 0);
 }
 
 TEST_F(SweepOfRuns, EndsBeforeItsWallTimeAndSaysWhatIsLeft)

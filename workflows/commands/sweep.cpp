@@ -54,7 +54,8 @@ void declare_how(CLI::App& app, SweepArguments& given)
                    "Snakefile. Default: local, or slurm where it was submitted before")
         ->check(CLI::IsMember({"local", "slurm", "snakemake"}));
     app.add_option("--jobs", options.jobs,
-                   "points at a time, default: one per core (Slurm decides itself)")
+                   "points at a time, default: as many as cores and memory allow (Slurm decides "
+                   "itself)")
         ->check(CLI::Range(1, 100'000));
     app.add_option("--threads", options.threads, "threads of every point")
         ->check(CLI::Range(1, 256))
