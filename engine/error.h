@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace sigmaflow {
 
@@ -47,6 +48,28 @@ public:
 private:
     ErrorKind kind_;
     std::string where_, problem_;
+};
+
+/// Several errors that were found together; kind and place are those of the first. what() has one
+/// line for each.
+class Errors : public Error {
+public:
+    explicit Errors(std::vector<Error> list)
+        : Error(list.front().kind(), list.front().where(), joined(list)), list_(std::move(list))
+    {
+    }
+
+    const std::vector<Error>& list() const { return list_; }
+
+private:
+    static std::string joined(const std::vector<Error>& list)
+    {
+        std::string text = list.front().problem();
+        for (std::size_t k = 1; k < list.size(); ++k) text += "\n" + std::string(list[k].what());
+        return text;
+    }
+
+    std::vector<Error> list_;
 };
 
 }

@@ -20,6 +20,7 @@
 #pragma once
 #include "engine/error.h"
 #include "engine/types.h"
+#include "io/json_override.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -108,8 +109,11 @@ public:
     JsonNode member(std::string_view key) const;  // error if it does not exist
     std::optional<JsonNode> find(std::string_view key) const;
     std::vector<std::string> keys() const;  // in the order of the file
-    /// Refuses every key that is not in the list and names the nearest known one.
+    /// Refuses every key that is not in the list and names the nearest known one; all of them at
+    /// once.
     void refuse_other_keys(std::span<const std::string_view> known) const;
+    /// Is there a key that is not in the list and was probably meant to be `key`?
+    bool misspells(std::string_view key, std::span<const std::string_view> known) const;
     void refuse_other_keys(std::initializer_list<std::string_view> known) const;
 
     // arrays
@@ -159,9 +163,11 @@ private:
 class JsonDocument {
 public:
     /// Errors: missing (no such file, a folder, a device, not readable), input (content).
-    static JsonDocument read(const std::filesystem::path& path);
+    static JsonDocument read(const std::filesystem::path& path,
+                             const std::vector<Override>& overrides = {});
     /// `name` stands for the file in error messages.
-    static JsonDocument parse(std::string text, std::string name);
+    static JsonDocument parse(std::string text, std::string name,
+                              const std::vector<Override>& overrides = {});
 
     JsonNode root() const&;
     JsonNode root() && = delete;  // the node would outlive its document

@@ -1,11 +1,22 @@
 #include "io/json_fields.h"
 
+#include "io/problems.h"
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace sigmaflow::io {
 
 using nlohmann::ordered_json;
+
+namespace {
+
+Range unsigned_range()
+{
+    return from_below(0, 18446744073709551616.0);  // 2^64
+}
+
+}
 
 std::string Field::allowed() const
 {
@@ -27,6 +38,10 @@ std::string Field::allowed() const
             return "numbers " + range.text();
         case FieldKind::texts:
             return "list of texts";
+        case FieldKind::objects:
+            return "list of objects";
+        case FieldKind::sweep:
+            return "object with one parameter and its values";
         case FieldKind::integer:
             return "integer " + range.text();
         case FieldKind::number:
@@ -91,7 +106,7 @@ Field& Fields::operator()(std::string name, std::optional<int>& value, Integers 
 
 Field& Fields::operator()(std::string name, std::uint64_t& value, std::string help)
 {
-    Field field{std::move(name), "-", std::move(help), FieldKind::integer, at_least(0)};
+    Field field{std::move(name), "-", std::move(help), FieldKind::integer, unsigned_range()};
     field.read = [&value](const JsonNode& node) { value = node.unsigned_integer(); };
     field.write = [&value] { return ordered_json(value); };
     return add(std::move(field));
@@ -99,7 +114,7 @@ Field& Fields::operator()(std::string name, std::uint64_t& value, std::string he
 
 Field& Fields::operator()(std::string name, std::optional<std::uint64_t>& value, std::string help)
 {
-    Field field{std::move(name), "-", std::move(help), FieldKind::integer, at_least(0)};
+    Field field{std::move(name), "-", std::move(help), FieldKind::integer, unsigned_range()};
     field.read = [&value](const JsonNode& node) { value = node.unsigned_integer(); };
     field.write = [&value] { return value ? ordered_json(*value) : ordered_json(nullptr); };
     return add(std::move(field));
@@ -117,6 +132,7 @@ Field& Fields::operator()(std::string name, std::string& value, std::size_t long
                           std::string help)
 {
     Field field{.name = std::move(name), .help = std::move(help), .kind = FieldKind::text};
+    field.length = {0, longest};
     field.read = [&value, longest](const JsonNode& node) { value = node.text(longest); };
     field.write = [&value] { return value.empty() ? ordered_json(nullptr) : ordered_json(value); };
     return add(std::move(field));
@@ -156,6 +172,7 @@ Field& Fields::operator()(std::string name, std::vector<double>& value, Length l
                           std::string unit, std::string help)
 {
     Field field{std::move(name), unit, std::move(help), FieldKind::numbers, range};
+    field.elements = length;
     field.read = [&value, length, range, unit](const JsonNode& node) {
         value = node.numbers(length, range, unit);
     };
@@ -167,6 +184,8 @@ Field& Fields::operator()(std::string name, std::vector<std::string>& value, Len
                           std::size_t longest, std::string help)
 {
     Field field{.name = std::move(name), .help = std::move(help), .kind = FieldKind::texts};
+    field.length = {0, longest};
+    field.elements = length;
     field.read = [&value, length, longest](const JsonNode& node) {
         value.clear();
         for (const JsonNode& text : node.elements(length)) value.push_back(text.text(longest));
@@ -193,6 +212,9 @@ Field& Fields::changes(std::string name, std::string help,
     Fields inner;
     describe(inner);
     Field field{.name = std::move(name), .help = std::move(help), .kind = FieldKind::group};
+    field.members = inner.fields_;
+    for (Field& member : field.members)  // the default is the value that would be replaced
+        member.write = [] { return ordered_json(); };
     field.read = [members = std::move(inner.fields_), &given](const JsonNode& node) {
         read_fields(node, members);
         given = ordered_json::object();
@@ -205,15 +227,19 @@ Field& Fields::changes(std::string name, std::string help,
 
 void read_fields(const JsonNode& object, const std::vector<Field>& fields)
 {
+    if (!object.is_object()) throw object.wrong("must be an object");
     std::vector<std::string_view> names;
     for (const Field& field : fields) names.push_back(field.name);
-    object.refuse_other_keys(names);
-    for (const Field& field : fields) {
-        if (const auto node = object.find(field.name))
-            field.read(*node);
-        else if (field.required)
-            object.member(field.name);  // throws
-    }
+    Problems problems;
+    problems.collect([&] { object.refuse_other_keys(names); });
+    for (const Field& field : fields)
+        problems.collect([&] {
+            if (const auto node = object.find(field.name))
+                field.read(*node);
+            else if (field.required && !object.misspells(field.name, names))
+                object.member(field.name);  // throws
+        });
+    problems.throw_all();
 }
 
 ordered_json write_fields(const std::vector<Field>& fields)

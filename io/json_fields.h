@@ -10,8 +10,8 @@
 //
 // Name, allowed values, unit and meaning stand in that line, the default is the value that the
 // struct has when it is described. From the list of fields come the strict reader (read_fields),
-// the resolved parameters of a manifest (write_fields) and the help texts (Field::allowed,
-// default_text); a JSON Schema can be made from it in the same way.
+// the resolved parameters of a manifest (write_fields), the help texts (Field::allowed,
+// default_text) and the JSON Schema (io/json_schema.h).
 #pragma once
 #include "io/json_document.h"
 
@@ -26,22 +26,43 @@
 
 namespace sigmaflow::io {
 
-enum class FieldKind { number, integer, boolean, text, word, vector, numbers, texts, group };
+enum class FieldKind {
+    number,
+    integer,
+    boolean,
+    text,
+    word,
+    vector,
+    numbers,
+    texts,
+    objects,
+    group,
+    sweep
+};
 
 /// One parameter. It refers to the struct that was described, which must live as long.
 struct Field {
     std::string name = {}, unit = {}, help = {};
     FieldKind kind = FieldKind::number;
     Range range = {};                          // of numbers and integers
+    Length length = {};                        // bytes of a text or of each of the texts
+    Length elements = {};                      // of numbers and texts
+    std::string pattern = {};                  // regular expression for a text, if it has a form
     std::vector<std::string_view> words = {};  // of a word
     std::vector<Field> members = {};           // of a group
     bool required = false;                     // must be given
+    bool names_file = false;                   // a text: a path relative to the folder of the file
     std::function<void(const JsonNode&)> read = {};
     std::function<nlohmann::ordered_json()> write = {};  // null: not given and without a default
 
     Field& require()
     {
         required = true;
+        return *this;
+    }
+    Field& of_file()
+    {
+        names_file = true;
         return *this;
     }
     /// "> 0 and <= 0.64", "heun, euler", "true, false"
@@ -95,17 +116,20 @@ public:
     Field& changes(std::string name, std::string help, const std::function<void(Fields&)>& describe,
                    nlohmann::ordered_json& given);
 
+    /// A field with functions of its own.
+    Field& add(Field field);
+
     const std::vector<Field>& list() const { return fields_; }
 
 private:
-    Field& add(Field field);
     Field& add_word(std::string name, std::vector<std::string_view> words, std::string help,
                     std::function<std::size_t()> get, std::function<void(std::size_t)> set);
     std::vector<Field> fields_;
 };
 
 /// Fills the described struct from an object. Unknown keys, missing required ones and wrong values
-/// are errors (input) with file, line, column and pointer.
+/// are errors (input) with file, line, column and pointer; all of them are thrown at once (Errors).
+/// Wrong values are not taken: the struct keeps what it had.
 void read_fields(const JsonNode& object, const std::vector<Field>& fields);
 
 /// The described struct as JSON; fields without a value are left out.

@@ -1,6 +1,7 @@
 #include "io/json_document.h"
 
 #include "io/json_parse.h"
+#include "io/problems.h"
 
 #include <algorithm>
 #include <cmath>
@@ -124,14 +125,28 @@ void JsonNode::refuse_other_keys(std::span<const std::string_view> known) const
 {
     const JsonValue::Object* object = object_of(*value_);
     if (!object) throw wrong("must be an object");
+    Problems problems;
     for (const JsonMember& member : *object) {
         if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
         const auto nearest = nearest_word(member.key, known);
-        throw error_at_key(member.key,
-                           "unknown key" +
-                               (nearest ? ", did you mean " + in_quotes(*nearest) + "?" : "") +
-                               " (known: " + one_of(known) + ")");
+        problems.collect([&] {
+            throw error_at_key(member.key,
+                               "unknown key" +
+                                   (nearest ? ", did you mean " + in_quotes(*nearest) + "?" : "") +
+                                   " (known: " + one_of(known) + ")");
+        });
     }
+    problems.throw_all();
+}
+
+bool JsonNode::misspells(std::string_view key, std::span<const std::string_view> known) const
+{
+    const JsonValue::Object* object = object_of(*value_);
+    if (!object) return false;
+    return std::any_of(object->begin(), object->end(), [&](const JsonMember& member) {
+        return std::find(known.begin(), known.end(), member.key) == known.end() &&
+               nearest_word(member.key, known) == key;
+    });
 }
 
 void JsonNode::refuse_other_keys(std::initializer_list<std::string_view> known) const

@@ -54,6 +54,8 @@ std::string json_location(const JsonTree& tree, std::size_t offset)
 {
     const std::string& text = tree.text;
     offset = std::min(offset, text.size());
+    for (auto it = tree.additions.rbegin(); it != tree.additions.rend(); ++it)
+        if (offset + 1 >= it->begin) return it->option;  // its key stands just before
     const std::size_t line_break = text.rfind('\n', offset == 0 ? std::string::npos : offset - 1);
     const std::size_t begin = offset == 0 || line_break == std::string::npos ? 0 : line_break + 1;
     const auto column =

@@ -48,9 +48,16 @@ inline const std::string* text_of(const JsonValue& value)
     return data ? data->get() : nullptr;
 }
 
+/// A value that does not stand in the file (io/json_override.h): its text, after that of the file.
+struct JsonAddition {
+    std::string option;
+    std::size_t begin;
+};
+
 struct JsonTree {
     std::string name, text;
     JsonValue root;
+    std::vector<JsonAddition> additions;  // the last one last
 };
 
 // A hostile text of some bytes per value needs fifty times its size as a tree: both are limited.
@@ -62,7 +69,7 @@ inline constexpr int deepest_json = 64;
 /// Fills tree.root from tree.text. Errors: input.
 void parse_json(JsonTree& tree);
 
-/// "name:line:column" of a byte of the text.
+/// "name:line:column" of a byte of the text, or the option that it stands for.
 std::string json_location(const JsonTree& tree, std::size_t offset);
 
 /// End of the token that begins at `offset`.

@@ -1,24 +1,28 @@
 #include "workflows/commands.h"
 
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 #include <array>
 #include <iostream>
+#include <memory>
 
 namespace sigmaflow::workflows {
 
 std::span<const Command> commands()
 {
-    static const std::array list{run_command(),      sweep_command(),    collect_command(),
-                                 validate_command(), evaluate_command(), report_command(),
-                                 steps_command()};
+    static const std::array list{init_command(),    run_command(),      sweep_command(),
+                                 collect_command(), validate_command(), evaluate_command(),
+                                 report_command(),  explain_command(),  schema_command(),
+                                 man_command()};
     return list;
 }
 
 namespace {
 
 constexpr const char* program_help = R"(examples:
+  sigmaflow init                                      my_flow.json, a workflow to start from
   sigmaflow run workflows/quickstart.json             results in out/quickstart
-  sigmaflow steps shear                               the parameters of one step
+  sigmaflow explain shear                             the parameters of one step
   sigmaflow validate my_flow.json                     what is wrong with a workflow
   sigmaflow report out/quickstart                     one HTML page of a run: report.html
   sigmaflow run --help                                options and examples of a command
@@ -50,14 +54,39 @@ std::function<Work()> declare_commands(CLI::App& app)
 
 std::string complaint(const Error& error)
 {
+    if (const auto* several = dynamic_cast<const Errors*>(&error)) {
+        std::string lines;
+        for (const Error& one : several->list()) lines += complaint(one);
+        return lines;
+    }
     const char* what = error.kind() == ErrorKind::interrupted ? "interrupted: " : "error: ";
     return std::string("sigmaflow: ") + what + error.what() + "\n";
+}
+
+std::function<std::vector<io::Override>()> declare_overrides(CLI::App& app)
+{
+    const auto given = std::make_shared<std::vector<std::string>>();
+    app.add_option("--set", *given,
+                   "another value than in the file, e.g. /steps/1/stress=3 (JSON pointer, steps "
+                   "count from 0); may be given several times")
+        ->allow_extra_args(false);
+    return [given] {
+        std::vector<io::Override> overrides;
+        for (const std::string& text : *given)
+            overrides.push_back(io::parse_override("--set", text));
+        return overrides;
+    };
 }
 
 void print_result(std::string_view text)
 {
     std::cout << text << std::flush;
     if (!std::cout) throw Error(ErrorKind::file, "standard output", "cannot be written");
+}
+
+void print_hint(std::string_view text)
+{
+    if (isatty(STDERR_FILENO) != 0) std::cerr << text << "\n";
 }
 
 void need_text(std::string_view option, std::string_view text, std::string_view requirement)

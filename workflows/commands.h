@@ -5,11 +5,13 @@
 // code). Help, man page and shell completion are made from the declared options.
 #pragma once
 #include "engine/error.h"
+#include "io/json_override.h"
 
 #include <functional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -31,9 +33,12 @@ Command run_command();
 Command validate_command();
 Command evaluate_command();
 Command report_command();
-Command steps_command();
 Command sweep_command();
 Command collect_command();
+Command init_command();
+Command man_command();
+Command explain_command();
+Command schema_command();
 
 inline constexpr std::string_view program_summary =
     "sigmaflow: dense frictional suspensions sheared at an imposed stress";
@@ -48,6 +53,12 @@ std::string complaint(const Error& error);
 /// Prints results. Error(file) if that fails: a full disk or a closed pipe must not pass for
 /// success.
 void print_result(std::string_view text);
+
+/// A line on stderr for people, if that is a terminal: what to do next.
+void print_hint(std::string_view text);
+
+/// --set /steps/1/stress=3, as often as one likes; to be asked after parsing.
+std::function<std::vector<io::Override>()> declare_overrides(CLI::App& app);
 
 /// "must name a folder" and the like, exit code 64.
 void need_text(std::string_view option, std::string_view text, std::string_view requirement);

@@ -89,13 +89,16 @@ std::string utc_now()
 }
 
 Manifest::Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file,
-                   int threads)
+                   const std::vector<io::Override>& overrides, int threads)
 {
     content_["sigmaflow"] = version();
     content_["status"] = "running";
     content_["started"] = utc_now();
     content_["ended"] = nullptr;
     content_["workflow_file"] = std::filesystem::absolute(workflow_file).string();
+    content_["overrides"] = Json::array();
+    for (const io::Override& given : overrides)
+        content_["overrides"].push_back(given.pointer + "=" + given.value);
     content_["seed"] = workflow.suspension->packing.seed;
     content_["host"] = host_name();
     content_["processor"] = processor();

@@ -24,7 +24,8 @@ std::string utc_now();
 
 class Manifest {
 public:
-    Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file, int threads);
+    Manifest(const Workflow& workflow, const std::filesystem::path& workflow_file,
+             const std::vector<io::Override>& overrides, int threads);
 
     /// A finished step with its files.
     void add_step(const StepRecord& record);

@@ -17,6 +17,7 @@ namespace sigmaflow::workflows {
 
 inline constexpr const char* manifest_name = "manifest.json";
 inline constexpr const char* summary_name = "summary.json";
+inline constexpr const char* resolved_name = "resolved.json";
 
 /// A file of a run, by its name relative to the folder.
 struct ResultFile {

@@ -122,7 +122,7 @@ void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json
 void run_workflow(const RunOptions& options, std::ostream& results)
 {
     const Interruption interruption(options.wall_time);
-    const io::JsonDocument document = io::JsonDocument::read(options.workflow);
+    const io::JsonDocument document = io::JsonDocument::read(options.workflow, options.overrides);
     const Workflow workflow = read_workflow(document, options.workflow);
     RunFolder folder(options.out.value_or(std::filesystem::path("out") / options.workflow.stem()),
                      workflow.name);
@@ -132,7 +132,9 @@ void run_workflow(const RunOptions& options, std::ostream& results)
     remove_unused(plan, folder);
     remove_other_parts(folder, options.force ? std::vector<std::string>{} : workflow.step_names());
     Progress progress = Progress::for_stderr(options.quiet);
-    Manifest manifest(workflow, options.workflow, options.threads);
+    Manifest manifest(workflow, options.workflow, options.overrides, options.threads);
+    io::write_file(folder.path() / resolved_name,
+                   workflow.standing_alone(options.workflow.parent_path()).dump(2) + "\n");
     manifest.write(folder, "running");
     progress.note("writing to " + folder.path().string());
     if (needed.disk > 0) progress.note("needs about " + forecast_text(needed));

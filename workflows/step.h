@@ -87,6 +87,9 @@ struct Plan {
     /// The run that the field `of` names, or the last one if it is empty, with frames if asked for;
     /// `of` and what the step needs and uses are filled in. Errors: input (no such run).
     const PlannedRun& need_run(const io::JsonNode& step, std::string& of, bool with_frames);
+    /// For a step that has errors: all that it could have handed on is there, so that those of
+    /// later steps are only their own.
+    void assume_results();
 };
 
 /// Error(input) at the key if a strain is beyond the end of the run.

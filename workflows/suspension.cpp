@@ -2,7 +2,20 @@
 
 #include "io/model_fields.h"
 
+#include <nlohmann/json.hpp>
+
 namespace sigmaflow::workflows {
+
+io::Field comment_field()
+{
+    constexpr std::size_t longest = 100'000;
+    return {.name = "comment",
+            .help = "free text; not used",
+            .kind = io::FieldKind::text,
+            .length = {0, longest},
+            .read = [](const io::JsonNode& node) { node.text(longest); },
+            .write = [] { return nlohmann::ordered_json(); }};
+}
 
 void Suspension::describe(io::Fields& f)
 {
@@ -21,6 +34,7 @@ void Suspension::describe(io::Fields& f)
     f("seed", packing.seed, "seed of the random packing; the same seed gives the same run");
     f.group("model", "physical parameters",
             [this](io::Fields& inner) { io::describe(inner, model); });
+    f.add(comment_field());
 }
 
 namespace {

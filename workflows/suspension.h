@@ -4,7 +4,12 @@
 #include "engine/packing.h"
 #include "io/json_fields.h"
 
+#include <string>
+
 namespace sigmaflow::workflows {
+
+/// "comment": what people want to say of an object, JSON has no comments. Not kept.
+io::Field comment_field();
 
 struct Suspension {
     PackingParameters packing;

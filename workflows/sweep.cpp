@@ -170,7 +170,7 @@ std::vector<Point> combinations(const Sweep& sweep)
     for (const auto& values : all) {
         Point point{point_name(names, values), values, 1, sweep.settings};
         for (std::size_t k = 0; k < values.size(); ++k)
-            point.overrides.push_back({sweep.swept[k].pointer, values[k].dump()});
+            point.overrides.push_back({"--sweep", sweep.swept[k].pointer, values[k].dump()});
         points.push_back(std::move(point));
     }
     return points;
@@ -188,7 +188,8 @@ std::string absolute_path(const std::filesystem::path& file)
 
 Swept parse_swept(const std::string& text)
 {
-    const io::Override parts = parse_setting("--sweep", text);
+    const io::Override parts = io::parse_override("--sweep", text);
+    if (!is_utf8(text)) throw Error(ErrorKind::usage, "--sweep", "must be UTF-8");
     Swept swept{parts.pointer, {}};
     const std::string option = "--sweep " + parts.pointer;
     if (auto values = range(option, parts.value)) {
@@ -204,18 +205,6 @@ Swept parse_swept(const std::string& text)
         if (!seen.insert(value_text(value)).second)
             throw Error(ErrorKind::usage, option, "has the value " + value_text(value) + " twice");
     return swept;
-}
-
-io::Override parse_setting(const std::string& option, const std::string& text)
-{
-    const auto equals = text.find('=');
-    if (equals == std::string::npos || text.front() != '/' || equals + 1 == text.size())
-        throw wrong_usage(option, text,
-                          option == "--set"
-                              ? "must be a place and its value, as /steps/1/stress=2"
-                              : "must be a place and its values, as /steps/1/stress=0.5,1,2");
-    if (!is_utf8(text)) throw Error(ErrorKind::usage, option, "must be UTF-8");
-    return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 std::vector<std::string> labels(const std::vector<Swept>& swept)
@@ -252,7 +241,7 @@ std::vector<Point> points_of(const Sweep& sweep,
             points.back().repeat = repeat;
             points.back().name += "_repeat_" + std::to_string(repeat);
             points.back().overrides.push_back(
-                {"/suspension/seed",
+                {"--repeat", "/suspension/seed",
                  std::to_string(
                      derived_seed(seed, repeat_stream, static_cast<std::uint64_t>(repeat)))});
         }
@@ -276,6 +265,14 @@ void freeze_paths(Json& value, const std::filesystem::path& folder)
         if (may_be_path && std::filesystem::is_regular_file(folder / text, error))
             value = absolute_path(folder / text);
     }
+}
+
+void freeze_paths(io::Override& setting, const std::filesystem::path& folder)
+{
+    const Json given = json_value(setting.value);
+    Json frozen = given;
+    freeze_paths(frozen, folder);
+    if (frozen != given) setting.value = frozen.dump();
 }
 
 Json frozen_workflow(const std::filesystem::path& file)

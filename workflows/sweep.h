@@ -42,9 +42,6 @@ inline constexpr std::size_t most_points = 100'000;
 /// Of one --sweep. Errors: usage (not of this form, an empty list, a value twice).
 Swept parse_swept(const std::string& text);
 
-/// Of one --set, "PTR=VALUE". Errors: usage.
-io::Override parse_setting(const std::string& option, const std::string& text);
-
 /// A short name for each of the swept parameters: the last part of the pointer, all of it where
 /// that is not enough to tell them apart.
 std::vector<std::string> labels(const std::vector<Swept>& swept);
@@ -61,7 +58,8 @@ std::vector<Point> points_of(const Sweep& sweep,
 /// of files in it no longer depend on where it is. Errors: missing, input.
 nlohmann::ordered_json frozen_workflow(const std::filesystem::path& file);
 
-/// The same for the values of a sweep, whose paths count from `folder` as well.
+/// The same for the values of a sweep and of --set, whose paths count from `folder` as well.
 void freeze_paths(nlohmann::ordered_json& value, const std::filesystem::path& folder);
+void freeze_paths(io::Override& setting, const std::filesystem::path& folder);
 
 }

@@ -32,7 +32,8 @@ std::vector<io::Override> overrides_of(const io::JsonNode& list)
 {
     std::vector<io::Override> result;
     for (const io::JsonNode& one : list.elements())
-        result.push_back({one.member("pointer").text(), one.member("value").text(1'000'000)});
+        result.push_back(
+            {"--set", one.member("pointer").text(), one.member("value").text(1'000'000)});
     return result;
 }
 

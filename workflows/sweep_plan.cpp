@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <ostream>
 #include <set>
 
 namespace sigmaflow::workflows {
@@ -67,8 +66,8 @@ SweepFolder new_sweep(const SweepOptions& options)
         .workflow = frozen_workflow(file),
         .sweep = {},
         .points = {}};
-    for (const std::string& text : options.settings)
-        sweep.sweep.settings.push_back(parse_setting("--set", text));
+    sweep.sweep.settings = options.settings;
+    for (io::Override& setting : sweep.sweep.settings) freeze_paths(setting, file.parent_path());
     for (const std::string& text : options.swept) {
         sweep.sweep.swept.push_back(parse_swept(text));
         for (auto& value : sweep.sweep.swept.back().values) freeze_paths(value, file.parent_path());
@@ -77,21 +76,6 @@ SweepFolder new_sweep(const SweepOptions& options)
         throw Error(ErrorKind::usage, "--sweep",
                     "is needed at least once, or --repeat, or the folder of a sweep");
     return sweep;
-}
-
-/// The place in the words of the option that the value came with.
-Error of_the_sweep(const Error& error, const Sweep& sweep)
-{
-    const std::string& where = error.where();
-    for (const Swept& swept : sweep.swept) {
-        const std::string option = "--set " + swept.pointer;
-        const bool whole = where.size() == option.size() ||
-                           (where.size() > option.size() &&
-                            !std::isalnum(static_cast<unsigned char>(where[option.size()])));
-        if (where.starts_with(option) && whole)
-            return Error(error.kind(), "--sweep" + where.substr(5), error.problem());
-    }
-    return error;
 }
 
 /// Checks points as `run` will, remembers their seeds, and keeps one error of each kind.
@@ -110,12 +94,11 @@ public:
             if (sweep_.repeats > 1 && !document.root().has("suspension"))
                 throw Error(ErrorKind::usage, "--repeat",
                             "makes seeds of packings, but the workflow has no \"suspension\"");
+        } catch (const Errors& errors) {
+            for (const Error& error : errors.list()) keep(error, point);
         } catch (const Error& error) {
-            if (error.kind() == ErrorKind::usage || error.kind() == ErrorKind::missing) throw;
-            if (error.kind() != ErrorKind::input) throw error.within("point " + point.name);
-            const Error named = of_the_sweep(error, sweep_);
-            if (said_.insert(named.what()).second)
-                errors_.push_back(named.within("point " + point.name));
+            if (error.kind() != ErrorKind::input) throw;
+            keep(error, point);
         }
     }
 
@@ -128,6 +111,12 @@ public:
     const std::vector<Error>& errors() const { return errors_; }
 
 private:
+    void keep(const Error& error, const Point& point)
+    {
+        if (said_.insert(error.what()).second)
+            errors_.push_back(error.within("point " + point.name));
+    }
+
     fs::path file_;
     const Sweep& sweep_;
     std::map<std::string, std::uint64_t> seeds_;
@@ -137,7 +126,7 @@ private:
 
 }
 
-SweepFolder planned_sweep(const SweepOptions& options, std::ostream& complaints)
+SweepFolder planned_sweep(const SweepOptions& options)
 {
     std::error_code error;
     const bool goes_on = fs::is_directory(options.given, error);
@@ -149,10 +138,7 @@ SweepFolder planned_sweep(const SweepOptions& options, std::ostream& complaints)
         points_of(sweep.sweep, [&](const Point& point) { return checker.seed_of(point); });
     for (const Point& point : sweep.points)
         if (point.repeat == 1) checker.check(point);
-    const std::vector<Error>& errors = checker.errors();
-    for (std::size_t k = 0; k + 1 < errors.size(); ++k)
-        complaints << "sigmaflow: error: " << errors[k].what() << "\n";
-    if (!errors.empty()) throw errors.back();
+    if (!checker.errors().empty()) throw Errors(checker.errors());
     return sweep;
 }
 

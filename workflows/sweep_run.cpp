@@ -189,9 +189,9 @@ void refuse_queued(const SweepFolder& sweep, const std::vector<PointStatus>& sta
 
 }
 
-void run_sweep(const SweepOptions& options, std::ostream& results, std::ostream& complaints)
+void run_sweep(const SweepOptions& options, std::ostream& results)
 {
-    SweepFolder sweep = planned_sweep(options, complaints);
+    SweepFolder sweep = planned_sweep(options);
     const SweepLock lock(sweep.path);
     if (holds_sweep(sweep.path)) {
         const SweepFolder before = read_sweep(sweep.path);

@@ -12,7 +12,8 @@ enum class Engine { local, slurm, snakemake };
 struct SweepOptions {
     std::filesystem::path given;               // a workflow file, or the folder of a sweep
     std::optional<std::filesystem::path> out;  // default: out/<name of the file>_sweep
-    std::vector<std::string> swept, settings;  // of --sweep and --set
+    std::vector<std::string> swept;            // of --sweep
+    std::vector<io::Override> settings;
     std::optional<int> repeats;
     std::optional<Engine> engine;     // default: local, or Slurm if the sweep was submitted
     int jobs = 0;                     // at a time; 0: cores over threads, or no limit in Slurm
@@ -25,13 +26,13 @@ struct SweepOptions {
     std::string quantity;  // of the figure; empty: chosen
 };
 
-/// The sweep that the options ask for. Every point is checked: all messages but the last one, which
-/// is thrown, go to `complaints`. Writes nothing. Errors: usage, missing, input.
-SweepFolder planned_sweep(const SweepOptions& options, std::ostream& complaints);
+/// The sweep that the options ask for. Every point is checked. Writes nothing. Errors: usage,
+/// missing, input (all of all points, each kind once).
+SweepFolder planned_sweep(const SweepOptions& options);
 
 /// Runs all points that are not complete, or has an engine do it, and prints what there is.
 /// Errors: those of planned_sweep; file, locked; interrupted; the kind of the worst failure of a
 /// point, after all others have run.
-void run_sweep(const SweepOptions& options, std::ostream& results, std::ostream& complaints);
+void run_sweep(const SweepOptions& options, std::ostream& results);
 
 }

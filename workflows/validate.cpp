@@ -24,9 +24,9 @@ std::string counted(std::size_t number, const std::string& what)
     return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
 }
 
-std::string describe_json(const Path& path)
+std::string describe_json(const Path& path, const std::vector<io::Override>& overrides)
 {
-    const io::JsonDocument document = io::JsonDocument::read(path);
+    const io::JsonDocument document = io::JsonDocument::read(path, overrides);
     const io::JsonNode root = document.root();
     if (root.find("kind")) return io::describe_case(root);
     if (root.find("steps")) {
@@ -80,22 +80,25 @@ constexpr std::array kinds{
     Kind{"sigmaflo", "", describe_sealed},
 };
 
-std::string describe(const Path& path)
+/// Null: JSON.
+const Kind* kind_of(const Path& path)
 {
     const std::string beginning = io::first_bytes(path, 8);
     for (const Kind& kind : kinds)
-        if (beginning.starts_with(kind.beginning)) return kind.describe(path);
+        if (beginning.starts_with(kind.beginning)) return &kind;
     for (const Kind& kind : kinds)
-        if (!kind.extension.empty() && path.extension() == kind.extension)
-            return kind.describe(path);
-    return describe_json(path);
+        if (!kind.extension.empty() && path.extension() == kind.extension) return &kind;
+    return nullptr;
 }
 
 }
 
-std::string validate_file(const Path& path)
+std::string validate_file(const Path& path, const std::vector<io::Override>& overrides)
 {
-    return path.string() + ": " + describe(path);
+    const Kind* kind = kind_of(path);
+    if (kind && !overrides.empty())
+        throw Error(ErrorKind::usage, path.string(), "has no values that --set could change");
+    return path.string() + ": " + (kind ? kind->describe(path) : describe_json(path, overrides));
 }
 
 }

@@ -25,6 +25,8 @@ struct Workflow {
     std::vector<std::string> step_names() const;
     /// All parameters with their defaults filled in: a workflow file that repeats this one.
     nlohmann::ordered_json resolved() const;
+    /// The same for a file in any other folder: paths, which count from `folder`, are absolute.
+    nlohmann::ordered_json standing_alone(const std::filesystem::path& folder) const;
 };
 
 Workflow read_workflow(const std::filesystem::path& path);
@@ -32,7 +34,9 @@ Workflow read_workflow(const io::JsonDocument& document, const std::filesystem::
 /// `file` stands for the file in error messages.
 Workflow parse_workflow(const std::string& text, const std::string& file);
 
-/// The parameters of a step, the common ones first.
+/// All of the file but the steps.
+std::vector<io::Field> workflow_fields(Workflow& workflow, std::string& schema);
+/// The parameters of a step, the common ones first, "sweep" last.
 std::vector<io::Field> step_fields(Step& step);
 
 }

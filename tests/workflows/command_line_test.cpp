@@ -35,7 +35,7 @@ protected:
 TEST_F(CommandLine, HelpAndVersionAreResults)
 {
     for (const char* arguments :
-         {"", "--help", "run --help", "--version", "steps", "steps shear"}) {
+         {"", "--help", "run --help", "--version", "explain", "explain shear"}) {
         const Said said = run(arguments);
         EXPECT_EQ(said.exit_code, 0) << arguments;
         EXPECT_EQ(said.err, "") << arguments;
@@ -43,7 +43,7 @@ TEST_F(CommandLine, HelpAndVersionAreResults)
     }
     EXPECT_EQ(run("--version").out, "sigmaflow " SIGMAFLOW_VERSION "\n");
     EXPECT_TRUE(contains(run("--help").out, "sigmaflow run workflows/quickstart.json"));
-    EXPECT_TRUE(contains(run("steps shear").out, "stress [sigma0]"));
+    EXPECT_TRUE(contains(run("explain shear").out, "stress [sigma0]"));
 }
 
 TEST_F(CommandLine, WrongUsageIs64)
@@ -54,7 +54,7 @@ TEST_F(CommandLine, WrongUsageIs64)
     expect_error("run a.json --bogus", 64, "--bogus");
     expect_error("run a.json b.json", 64, "b.json");
     expect_error("run a.json --out", 64, "--out");
-    expect_error("steps sheer", 64, "did you mean \"shear\"?");
+    expect_error("explain sheer", 64, "did you mean \"shear\"?");
     expect_error("evaluate", 64, "CASE.json");
 }
 
@@ -149,7 +149,7 @@ TEST_F(CommandLine, QuietSaysNothingButResults)
 
 TEST_F(CommandLine, FullStandardOutputIsAnError)
 {
-    const std::string command = std::string("'") + SIGMAFLOW_PROGRAM + "' steps >/dev/full 2>&1";
+    const std::string command = std::string("'") + SIGMAFLOW_PROGRAM + "' explain >/dev/full 2>&1";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 73);
 }
 

@@ -340,6 +340,10 @@ TEST_F(SweepOfRuns, FindsFilesOfTheWorkflowFromItsOwnFolder)
                                        {"step": "velocity_profile", "bins": 4}]})");
     const Said said = run("sweep again.json --sweep /steps/1/bins=3,5 --out deep/down -q");
     EXPECT_EQ(said.exit_code, 0) << said.err;
+    const Said set =
+        run("sweep again.json --sweep /steps/1/bins=3 --set /steps/0/file=./data/shear/run.h5 "
+            "--out u -q");
+    EXPECT_EQ(set.exit_code, 0) << set.err;
     const Said files =
         run("sweep again.json --sweep /steps/0/file=data/shear/run.h5,data/shear/none.h5 --out t");
     EXPECT_EQ(files.exit_code, 65);

@@ -22,6 +22,7 @@ Work declare(CLI::App& app)
     const auto given = std::make_shared<RunArguments>();
     RunOptions& options = given->options;
     app.add_option("WORKFLOW.json", options.workflow, "the workflow")->required();
+    const auto overrides = declare_overrides(app);
     const CLI::Option* out = app.add_option(
         "--out", given->out,
         "folder for the results, default out/<name of the workflow file>. An earlier run of the "
@@ -42,8 +43,9 @@ Work declare(CLI::App& app)
         ->check(CLI::Range(1, 256))
         ->default_val(1);
     app.add_flag("-q,--quiet", options.quiet, "no progress, only results and errors");
-    return [given, out, wall_time] {
+    return [given, overrides, out, wall_time] {
         RunOptions& chosen = given->options;
+        chosen.overrides = overrides();
         if (out->count()) {
             need_text("--out", given->out, "must name a folder");
             chosen.out = given->out;
@@ -67,6 +69,7 @@ Command run_command()
     return {"run", "run a workflow, or what is left of it",
             R"(  sigmaflow run workflows/quickstart.json             results in out/quickstart
   sigmaflow run my_flow.json --out results/phi_0.56   results in a folder of your choice
+  sigmaflow run my_flow.json --set /steps/1/stress=3  another value than in the file
   sigmaflow run my_flow.json --max-walltime 2h        stops in time; the same command goes on)",
             declare};
 }

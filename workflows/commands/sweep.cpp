@@ -35,8 +35,6 @@ void declare_what(CLI::App& app, SweepArguments& given)
                    "PTR=VALUES: a parameter by its JSON pointer and its values, a,b,c or "
                    "from:to:count or from:to:count:log; several: all combinations")
         ->allow_extra_args(false);
-    app.add_option("--set", options.settings, "PTR=VALUE: a parameter that all points have changed")
-        ->allow_extra_args(false);
     app.add_option("--repeat", given.repeats, "runs of every point, each with a seed of its own")
         ->check(CLI::Range(1, 10'000));
     app.add_option("--out", given.out,
@@ -76,9 +74,11 @@ Work declare(CLI::App& app)
 {
     const auto given = std::make_shared<SweepArguments>();
     declare_what(app, *given);
+    const auto settings = declare_overrides(app);
     declare_how(app, *given);
-    return [given, &app] {
+    return [given, settings, &app] {
         SweepOptions& chosen = given->options;
+        chosen.settings = settings();
         if (app.count("--out")) {
             need_text("--out", given->out, "must name a folder");
             chosen.out = given->out;
@@ -96,7 +96,7 @@ Work declare(CLI::App& app)
         if (chosen.engine != Engine::slurm && (given->no_submit || app.count("--slurm-options")))
             throw Error(ErrorKind::usage, given->no_submit ? "--no-submit" : "--slurm-options",
                         "needs --engine slurm");
-        run_sweep(chosen, std::cout, std::cerr);
+        run_sweep(chosen, std::cout);
         print_result("");
     };
 }

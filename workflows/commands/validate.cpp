@@ -5,35 +5,39 @@
 #include "workflows/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <iostream>
 #include <memory>
-#include <optional>
 
 namespace sigmaflow::workflows {
 
 namespace {
 
-/// One line for each good file, an error for each bad one; the last error is thrown.
-void validate_files(const std::vector<std::string>& files)
+/// One line for each good file, errors for each bad one; those of the last are thrown.
+void validate_files(const std::vector<std::string>& files,
+                    const std::vector<io::Override>& overrides)
 {
-    std::optional<Error> last;
+    std::exception_ptr last;
+    std::string last_complaint;
     for (const std::string& file : files) {
         try {
-            print_result(validate_file(file) + "\n");
+            print_result(validate_file(file, overrides) + "\n");
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::missing) throw;
-            if (last) std::cerr << complaint(*last);
-            last = error;
+            std::cerr << last_complaint;
+            last = std::current_exception();
+            last_complaint = complaint(error);
         }
     }
-    if (last) throw *last;
+    if (last) std::rethrow_exception(last);
 }
 
 Work declare(CLI::App& app)
 {
     const auto files = std::make_shared<std::vector<std::string>>();
     app.add_option("FILE", *files, "the files")->required();
-    return [files] { validate_files(*files); };
+    const auto overrides = declare_overrides(app);
+    return [files, overrides] { validate_files(*files, overrides()); };
 }
 
 }

@@ -43,7 +43,8 @@ struct StoredRunStep {
     {
         f("file", file, 4096,
           "run.h5 of a step \"shear\"; relative to the folder of the workflow file")
-            .require();
+            .require()
+            .of_file();
     }
 
     void validate(const io::JsonNode& node, Plan& plan)
