@@ -78,9 +78,10 @@ TEST(SweptValues, OfRangesHaveEqualStepsOrRatiosAndBothEnds)
 
 TEST(SweptValues, OfAnotherFormAreRefused)
 {
-    EXPECT_NE(usage_error("stress=1").find("must be a place and its values"), std::string::npos);
-    EXPECT_NE(usage_error("/a").find("must be a place"), std::string::npos);
-    EXPECT_NE(usage_error("").find("must be a place"), std::string::npos);
+    EXPECT_NE(usage_error("stress=1").find("must be a JSON pointer and a value"),
+              std::string::npos);
+    EXPECT_NE(usage_error("/a").find("must be a JSON pointer"), std::string::npos);
+    EXPECT_NE(usage_error("").find("must be a JSON pointer"), std::string::npos);
     EXPECT_NE(usage_error("/a=1,,2").find("must not have empty values"), std::string::npos);
     EXPECT_NE(usage_error("/a=1,2,1.0").find("has the value 1 twice"), std::string::npos);
     EXPECT_NE(usage_error("/a=1:2:1").find("must have 2 to"), std::string::npos);
