@@ -10,9 +10,10 @@ namespace sigmaflow::workflows {
 
 std::span<const Command> commands()
 {
-    static const std::array list{init_command(),     run_command(),    validate_command(),
-                                 evaluate_command(), report_command(), explain_command(),
-                                 schema_command(),   man_command()};
+    static const std::array list{init_command(),    run_command(),      sweep_command(),
+                                 collect_command(), validate_command(), evaluate_command(),
+                                 report_command(),  explain_command(),  schema_command(),
+                                 man_command()};
     return list;
 }
 

@@ -33,6 +33,8 @@ Command run_command();
 Command validate_command();
 Command evaluate_command();
 Command report_command();
+Command sweep_command();
+Command collect_command();
 Command init_command();
 Command man_command();
 Command explain_command();

@@ -31,12 +31,6 @@ std::string joined(std::initializer_list<int> numbers)
     return result;
 }
 
-std::string host_name()
-{
-    std::array<char, 256> name{};
-    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
-
 std::string processor()
 {
     std::ifstream file("/proc/cpuinfo");
@@ -47,6 +41,12 @@ std::string processor()
     return "unknown";
 }
 
+}
+
+std::string host_name()
+{
+    std::array<char, 256> name{};
+    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
 std::string version()

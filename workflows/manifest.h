@@ -10,6 +10,9 @@ namespace sigmaflow::workflows {
 /// Version of this program.
 std::string version();
 
+/// Of this machine.
+std::string host_name();
+
 /// {"eigen": "3.4.0", "vtk": "9.1.0", ...}
 nlohmann::ordered_json library_versions();
 
