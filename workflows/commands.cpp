@@ -8,8 +8,10 @@ namespace sigmaflow::workflows {
 
 std::span<const Command> commands()
 {
-    static const std::array list{run_command(), validate_command(), evaluate_command(),
-                                 report_command(), steps_command()};
+    static const std::array list{run_command(),      plan_command(),      status_command(),
+                                 validate_command(), report_command(),    compare_command(),
+                                 verify_command(),   doctor_command(),    evaluate_command(),
+                                 steps_command(),    completion_command()};
     return list;
 }
 
@@ -24,7 +26,7 @@ constexpr const char* program_help = R"(examples:
 
 a run that was interrupted or killed goes on with the same command
 
-exit codes: 0 complete, 3 interrupted (the same command goes on), 64 wrong command line, 65 invalid
+exit codes: 0 complete, 1 compared runs differ, 3 interrupted (the same command goes on), 64 wrong command line, 65 invalid
 input, 66 input missing, 69 pictures could not be drawn, 70 numerical failure, 71 internal error,
 73 cannot write, 74 disk full, 75 folder in use)";
 
@@ -49,7 +51,9 @@ std::function<Work()> declare_commands(CLI::App& app)
 
 std::string complaint(const Error& error)
 {
-    const char* what = error.kind() == ErrorKind::interrupted ? "interrupted: " : "error: ";
+    const char* what = error.kind() == ErrorKind::interrupted ? "interrupted: "
+                       : error.kind() == ErrorKind::different ? ""
+                                                              : "error: ";
     return std::string("sigmaflow: ") + what + error.what() + "\n";
 }
 

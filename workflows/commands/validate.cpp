@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "workflows/commands.h"
+#include "workflows/json_lines.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -29,11 +30,36 @@ void validate_files(const std::vector<std::string>& files)
     if (last) throw *last;
 }
 
+/// One event for each file.
+void validate_as_json(const std::vector<std::string>& files)
+{
+    std::optional<Error> last;
+    for (const std::string& file : files) {
+        nlohmann::ordered_json event = {{"event", "validate"}, {"file", file}, {"valid", true}};
+        try {
+            event["text"] = validate_file(file);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::missing) throw;
+            event["valid"] = false;
+            event["text"] = error.what();
+            last = error;
+        }
+        print_json(event);
+    }
+    if (last) throw Verdict(last->kind(), last->where(), last->problem());
+}
+
+struct ValidateArguments {
+    std::vector<std::string> files;
+    bool json = false;
+};
+
 Work declare(CLI::App& app)
 {
-    const auto files = std::make_shared<std::vector<std::string>>();
-    app.add_option("FILE", *files, "the files")->required();
-    return [files] { validate_files(*files); };
+    const auto given = std::make_shared<ValidateArguments>();
+    app.add_option("FILE", given->files, "the files")->required();
+    describe_json(app, given->json);
+    return [given] { given->json ? validate_as_json(given->files) : validate_files(given->files); };
 }
 
 }
