@@ -4,6 +4,7 @@
 #include "engine/step.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 
@@ -198,9 +199,9 @@ double cpu_seconds()
 
 double machine_factor(const Suspension& suspension)
 {
-    constexpr int largest = 1000, warm = 20, timed = 80;
+    constexpr int largest = 1000, block = 20;
     // steps soon after the start, with few contacts yet, take less than those that follow
-    constexpr double reference = 0.45;
+    constexpr double reference = 0.54;
     PackingParameters parameters = suspension.packing;
     parameters.particles = std::min(parameters.particles, largest);
     if (!parameters.radii.empty()) {
@@ -222,12 +223,17 @@ double machine_factor(const Suspension& suspension)
                 advance(state, model, ImposedStress{1}, {Scheme::implicit, 1e-2}, {}, workspace),
                 workspace);
     };
-    advance_by(warm);
-    const double begin = cpu_seconds();
-    advance_by(timed);
+    advance_by(block);
+    std::array<double, 5> taken{};  // the median: other programs come and go
+    for (double& seconds : taken) {
+        const double begin = cpu_seconds();
+        advance_by(block);
+        seconds = cpu_seconds() - begin;
+    }
+    std::sort(taken.begin(), taken.end());
     const double n = parameters.particles;
-    return (cpu_seconds() - begin) /
-           (timed * reference * step_seconds(n, parameters.volume_fraction, "implicit", "pcg"));
+    return taken[taken.size() / 2] /
+           (block * reference * step_seconds(n, parameters.volume_fraction, "implicit", "pcg"));
 }
 
 std::vector<StepCost> cost(const Workflow& workflow, double machine, int threads)

@@ -80,8 +80,11 @@ private:
         }
         if (!seal_holds(text))
             return blame(manifest_name,
-                         "was changed: its seal does not hold; what it lists is "
-                         "taken from the records of the steps");
+                         (text.find("\"seal\": ") == std::string::npos
+                              ? std::string("has no seal: it was changed, or an earlier version of "
+                                            "the program wrote it")
+                              : std::string("was changed: its seal does not hold")) +
+                             "; what it lists is taken from the records of the steps");
         const Json manifest = Json::parse(text);
         found_.status = manifest.at("status");
         // a run that was killed may have done more since

@@ -60,7 +60,7 @@ TEST_F(PlanOfARun, SaysWhatRunsAndWhyAndLeavesNoTrace)
     const auto after = plan();
     EXPECT_EQ(after["steps"][0]["runs"], false);
     EXPECT_EQ(after["steps"][0]["why"], "is finished");
-    EXPECT_EQ(after["steps"][1]["why"], "stress was 2, is 3");
+    EXPECT_EQ(after["steps"][1]["why"], "stress was 2.0, is 3.0");
     EXPECT_EQ(after["steps"][2]["why"], "a step before it was changed");
     EXPECT_EQ(plan("--force")["steps"][0]["why"], "--force");
 }
