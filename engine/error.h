@@ -13,6 +13,7 @@
 namespace sigmaflow {
 
 enum class ErrorKind {
+    different = 1,    // two runs that were compared are not the same
     interrupted = 3,  // stopped on request; the same command goes on
     usage = 64,       // wrong command line
     input = 65,       // invalid workflow, case or other data of the user

@@ -25,7 +25,7 @@ std::string sealed(const Seal& seal, std::string_view bytes)
     return a.bytes();
 }
 
-std::string unsealed(std::string_view content, const Seal& seal, const std::string& file)
+void check_seal(std::string_view content, const std::string& file)
 {
     const auto refuse = [&](const std::string& problem) {
         throw Error(ErrorKind::input, file, problem);
@@ -36,6 +36,15 @@ std::string unsealed(std::string_view content, const Seal& seal, const std::stri
     const std::string_view all = content.substr(0, content.size() - sizeof digest);
     ArchiveReader(content.substr(all.size()))(digest);
     if (checksum(all) != digest) refuse("is damaged: its checksum is another one");
+}
+
+std::string unsealed(std::string_view content, const Seal& seal, const std::string& file)
+{
+    const auto refuse = [&](const std::string& problem) {
+        throw Error(ErrorKind::input, file, problem);
+    };
+    check_seal(content, file);
+    const std::string_view all = content.substr(0, content.size() - sizeof(Digest));
     // what follows was written as it is, by this or another version of the program
     try {
         ArchiveReader a(all.substr(magic.size()));

@@ -21,6 +21,9 @@ std::string read_sealed(const std::filesystem::path& path, const Seal& seal);
 /// The whole file; one that is not sealed is refused before it is read.
 std::string sealed_content(const std::filesystem::path& path);
 
+/// Error(input) if the bytes of a sealed file of any kind are not those that were written.
+void check_seal(std::string_view file_content, const std::string& file);
+
 /// The same in memory; `file` stands for the file in error messages.
 std::string sealed(const Seal& seal, std::string_view bytes);
 std::string unsealed(std::string_view file_content, const Seal& seal, const std::string& file);

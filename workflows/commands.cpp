@@ -10,10 +10,11 @@ namespace sigmaflow::workflows {
 
 std::span<const Command> commands()
 {
-    static const std::array list{init_command(),    run_command(),      sweep_command(),
-                                 collect_command(), validate_command(), evaluate_command(),
-                                 report_command(),  explain_command(),  schema_command(),
-                                 man_command()};
+    static const std::array list{
+        init_command(),     run_command(),     plan_command(),       status_command(),
+        sweep_command(),    collect_command(), report_command(),     compare_command(),
+        validate_command(), verify_command(),  evaluate_command(),   explain_command(),
+        schema_command(),   doctor_command(),  completion_command(), man_command()};
     return list;
 }
 
@@ -29,7 +30,7 @@ constexpr const char* program_help = R"(examples:
 
 a run that was interrupted or killed goes on with the same command
 
-exit codes: 0 complete, 3 interrupted (the same command goes on), 64 wrong command line, 65 invalid
+exit codes: 0 complete, 1 compared runs differ, 3 interrupted (the same command goes on), 64 wrong command line, 65 invalid
 input, 66 input missing, 69 pictures could not be drawn, 70 numerical failure, 71 internal error,
 73 cannot write, 74 disk full, 75 folder in use)";
 
@@ -59,7 +60,9 @@ std::string complaint(const Error& error)
         for (const Error& one : several->list()) lines += complaint(one);
         return lines;
     }
-    const char* what = error.kind() == ErrorKind::interrupted ? "interrupted: " : "error: ";
+    const char* what = error.kind() == ErrorKind::interrupted ? "interrupted: "
+                       : error.kind() == ErrorKind::different ? ""
+                                                              : "error: ";
     return std::string("sigmaflow: ") + what + error.what() + "\n";
 }
 

@@ -27,6 +27,11 @@ struct Command {
     Work (*declare)(CLI::App&);
 };
 
+/// The verdict of a command that has told all on stdout already: with --json no further event.
+struct Verdict : Error {
+    using Error::Error;
+};
+
 std::span<const Command> commands();
 
 Command run_command();
@@ -39,6 +44,12 @@ Command init_command();
 Command man_command();
 Command explain_command();
 Command schema_command();
+Command compare_command();
+Command completion_command();
+Command doctor_command();
+Command plan_command();
+Command status_command();
+Command verify_command();
 
 inline constexpr std::string_view program_summary =
     "sigmaflow: dense frictional suspensions sheared at an imposed stress";

@@ -2,19 +2,31 @@
 #include "engine/error.h"
 #include "workflows/blas_kernel.h"
 #include "workflows/commands.h"
+#include "workflows/json_lines.h"
 #include "workflows/manifest.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstring>
 #include <iostream>
 
 namespace {
 
 using namespace sigmaflow;
 
-int complain(const std::string& message)
+/// What was wrong, on stderr; with --json as an event on stdout, too. Returns the exit code.
+int complain(const Error& error, bool json)
 {
-    std::cerr << "sigmaflow: error: " << message << "\n";
-    return static_cast<int>(ErrorKind::internal);
+    std::cerr << workflows::complaint(error);
+    try {
+        if (const auto* several = json ? dynamic_cast<const Errors*>(&error) : nullptr)
+            for (const Error& one : several->list())
+                workflows::print_json(workflows::error_event(one));
+        else if (json)
+            workflows::print_json(workflows::error_event(error));
+    } catch (const Error&) {  // nobody reads stdout: the first error is the one to report
+    }
+    return static_cast<int>(error.kind());
 }
 
 void run_command_line(int argc, char** argv)
@@ -39,18 +51,23 @@ void run_command_line(int argc, char** argv)
 int main(int argc, char** argv)
 {
     workflows::choose_blas_kernel(argv);
+    // asked of the words themselves: the command line may be what is wrong
+    const bool json = std::any_of(argv, argv + argc,
+                                  [](const char* word) { return !std::strcmp(word, "--json"); });
     try {
         run_command_line(argc, argv);
         return 0;
     } catch (const CLI::ParseError& error) {
-        complain(std::string(error.what()) + " (sigmaflow --help)");
-        return static_cast<int>(ErrorKind::usage);
+        return complain(
+            Error(ErrorKind::usage, "", std::string(error.what()) + " (sigmaflow --help)"), json);
+    } catch (const workflows::Verdict& verdict) {
+        return complain(verdict, false);
     } catch (const Error& error) {
-        std::cerr << workflows::complaint(error);
-        return static_cast<int>(error.kind());
+        return complain(error, json);
     } catch (const std::exception& error) {
-        return complain(std::string("internal error: ") + error.what());
+        return complain(
+            Error(ErrorKind::internal, "", std::string("internal error: ") + error.what()), json);
     } catch (...) {
-        return complain("internal error of unknown kind");
+        return complain(Error(ErrorKind::internal, "", "internal error of unknown kind"), json);
     }
 }

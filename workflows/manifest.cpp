@@ -122,14 +122,52 @@ void Manifest::add_step(const StepRecord& record)
             {{"name", file.name}, {"size", file.size}, {"xxh3", io::hexadecimal(file.digest)}});
 }
 
+namespace {
+
+constexpr std::string_view before_seal = ",\n  \"seal\": \"", after_seal = "\"\n}\n";
+
+/// Files that are written anew after every step and belong to none.
+Json files_of_run(const RunFolder& folder)
+{
+    Json list = Json::array();
+    for (const char* name : {summary_name, "resolved.json"}) {
+        std::error_code error;
+        const auto size = std::filesystem::file_size(folder.path() / name, error);
+        if (error) continue;
+        const io::Digest digest = io::file_checksum(folder.path() / name);
+        list.push_back({{"name", name}, {"size", size}, {"xxh3", io::hexadecimal(digest)}});
+    }
+    return list;
+}
+
+}
+
+std::string with_seal(const Json& manifest)
+{
+    // paths and host names need not be UTF-8
+    std::string text = manifest.dump(2, ' ', false, Json::error_handler_t::replace);
+    text.resize(text.size() - 2);  // "\n}"
+    const std::string seal = io::hexadecimal(io::checksum(text));
+    return text.append(before_seal).append(seal).append(after_seal);
+}
+
+bool seal_holds(std::string_view text)
+{
+    constexpr std::size_t digits = 32, length = before_seal.size() + digits + after_seal.size();
+    if (text.size() < length) return false;
+    const std::string_view content = text.substr(0, text.size() - length);
+    return text.substr(content.size()) == std::string(before_seal) +
+                                              io::hexadecimal(io::checksum(content)) +
+                                              std::string(after_seal);
+}
+
 void Manifest::write(const RunFolder& folder, const std::string& status, const std::string& error)
 {
     content_["status"] = status;
     if (status != "running") content_["ended"] = utc_now();
     if (!error.empty()) content_["error"] = error;
-    // paths and host names need not be UTF-8
-    io::write_file(folder.path() / manifest_name,
-                   content_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    content_["files_of_run"] = files_of_run(folder);
+    io::write_file(folder.path() / manifest_name, with_seal(content_));
 }
 
 }

@@ -51,34 +51,41 @@ Progress Progress::for_stderr(bool quiet)
 void Progress::begin(const std::string& task)
 {
     task_ = task;
-    started_ = shown_ = Clock::now();
+    started_ = shown_ = told_ = Clock::now();
     shown_fraction_ = 0;
     first_fraction_ = -1;
 }
 
 void Progress::update(double fraction, const std::string& details)
 {
-    if (style_ == Style::quiet) return;
+    if (style_ == Style::quiet && !listener_) return;
     fraction = std::isfinite(fraction) ? std::clamp(fraction, 0., 1.) : 0;
     const Clock::time_point now = Clock::now();
-    const double since = seconds_between(shown_, now), elapsed = seconds_between(started_, now);
     if (first_fraction_ < 0) first_fraction_ = fraction;
-    const double gained = fraction - first_fraction_;
-    const std::string left = gained > 0.01 && elapsed > 1
-                                 ? ", " + duration_text(elapsed * (1 - fraction) / gained) + " left"
-                                 : "";
+    const double elapsed = seconds_between(started_, now), gained = fraction - first_fraction_;
+    const double left = gained > 0.01 && elapsed > 1 ? elapsed * (1 - fraction) / gained : -1;
+    if (listener_ && seconds_between(told_, now) >= 1) {
+        listener_("progress", details, fraction, left);
+        told_ = now;
+    }
+    show(fraction, left >= 0 ? ", " + duration_text(left) + " left" : "", details);
+}
+
+void Progress::show(double fraction, const std::string& left, const std::string& details)
+{
+    if (style_ == Style::quiet) return;
+    const Clock::time_point now = Clock::now();
+    const double since = seconds_between(shown_, now);
+    char percent[16];
+    std::snprintf(percent, sizeof percent, "%3.0f %%", 100 * fraction);
     if (style_ == Style::lines) {
         const bool due = since >= 10 || (since >= 1 && fraction >= shown_fraction_ + 0.1);
         if (!due) return;
-        char percent[16];
-        std::snprintf(percent, sizeof percent, "%3.0f %%", 100 * fraction);
         print(task_ + ": " + percent + left + "; " + details + "\n");
     } else {
         if (since < 0.1) return;
         constexpr int width = 24;
         const int full = static_cast<int>(fraction * width);
-        char percent[16];
-        std::snprintf(percent, sizeof percent, "%3.0f %%", 100 * fraction);
         print("\r\033[K" + task_ + " [" + std::string(full, '#') + std::string(width - full, '.') +
               "] " + percent + left + "; " + details);
         bar_drawn_ = true;
@@ -89,19 +96,23 @@ void Progress::update(double fraction, const std::string& details)
 
 void Progress::end(const std::string& result)
 {
-    note(task_ + ": " + result + " (" + duration_text(seconds_between(started_, Clock::now())) +
-         ")");
+    clear();
+    if (style_ == Style::quiet) return;
+    print(task_ + ": " + result + " (" + duration_text(seconds_between(started_, Clock::now())) +
+          ")\n");
 }
 
 void Progress::note(const std::string& text)
 {
     clear();
+    if (listener_) listener_("note", text, 0, -1);
     if (style_ != Style::quiet) print(text + "\n");
 }
 
 void Progress::warn(const std::string& text)
 {
     clear();
+    if (listener_) listener_("warning", text, 0, -1);
     print("sigmaflow: warning: " + text + "\n");
 }
 

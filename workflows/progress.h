@@ -5,7 +5,9 @@
 // terminal, no colours at all.
 #pragma once
 #include <chrono>
+#include <functional>
 #include <string>
+#include <string_view>
 
 namespace sigmaflow::workflows {
 
@@ -16,6 +18,12 @@ public:
     explicit Progress(Style style) : style_(style) {}
     /// bar on a terminal, lines elsewhere.
     static Progress for_stderr(bool quiet);
+
+    /// Is told everything, also when quiet: "progress" with the fraction and the seconds left (-1:
+    /// not known yet) at most once a second, "note" and "warning" with their text.
+    using Listener = std::function<void(std::string_view what, const std::string& text,
+                                        double fraction, double seconds_left)>;
+    void tell(Listener listener) { listener_ = std::move(listener); }
 
     /// A new task begins, e.g. a step.
     void begin(const std::string& task);
@@ -32,9 +40,12 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    void show(double fraction, const std::string& left, const std::string& details);
+
     Style style_;
+    Listener listener_;
     std::string task_;
-    Clock::time_point started_, shown_;
+    Clock::time_point started_, shown_, told_;
     double shown_fraction_ = 0;
     double first_fraction_ = -1;  // a run that goes on does not begin at 0; -1: not known yet
     bool bar_drawn_ = false;

@@ -20,7 +20,8 @@ struct EarlierRecords {
 std::vector<fs::path> record_paths(const RunFolder& folder)
 {
     std::vector<fs::path> paths;
-    for (const auto& entry : fs::directory_iterator(folder.own_file("")))
+    std::error_code none;  // a folder that is only looked at need not exist
+    for (const auto& entry : fs::directory_iterator(folder.own_file(""), none))
         if (entry.path().extension() == record_ending) paths.push_back(entry.path());
     std::sort(paths.begin(), paths.end());
     return paths;

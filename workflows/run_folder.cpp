@@ -3,12 +3,12 @@
 #include "engine/error.h"
 #include "io/atomic_file.h"
 #include "io/json_document.h"
+#include "workflows/folder_owner.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -19,9 +19,6 @@ namespace sigmaflow::workflows {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr const char* own_folder = ".sigmaflow";
-constexpr const char* owner_name = "owner";
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& problem)
 {
@@ -40,23 +37,12 @@ void make_folder(const fs::path& path)
     io::sync_entry(path);
 }
 
-std::string this_process()
-{
-    std::array<char, 256> host{};
-    if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '?';
-    return "process " + std::to_string(getpid()) + " on " + host.data();
-}
-
 /// Who holds the lock: it has had time to write that down.
 std::string owner_of(const fs::path& folder)
 {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    try {
-        const std::string text = io::read_file(folder / own_folder / owner_name, 1000);
-        return text.substr(0, text.find('\n'));
-    } catch (const Error&) {
-        return "another process";
-    }
+    const std::string text = read_owner(folder).text;
+    return text.empty() ? "another process" : text;
 }
 
 int lock_folder(const fs::path& path)
@@ -132,9 +118,7 @@ RunFolder::RunFolder(fs::path path, const std::string& workflow_name) : path_(st
         if (!fs::is_empty(path_)) require_same_workflow(path_, workflow_name);
         refuse_links(path_, own_folder);
         make_folder(path_ / own_folder);
-        io::OutputFile owner(path_ / own_folder / owner_name);
-        owner.write(this_process() + "\n");
-        owner.close();
+        write_owner(path_);
         for (const auto& entry : fs::directory_iterator(path_ / own_folder))
             if (entry.path().extension() == ".tmp") fs::remove(entry.path(), ignored);
     } catch (const fs::filesystem_error& error) {
@@ -146,9 +130,16 @@ RunFolder::RunFolder(fs::path path, const std::string& workflow_name) : path_(st
     }
 }
 
+RunFolder::RunFolder(fs::path path) : path_(std::move(path)) {}
+
+RunFolder RunFolder::to_read(const fs::path& path)
+{
+    return RunFolder(path);
+}
+
 RunFolder::~RunFolder()
 {
-    ::close(lock_);
+    if (lock_ >= 0) ::close(lock_);
 }
 
 fs::path RunFolder::file(const std::string& relative)

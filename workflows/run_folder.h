@@ -18,6 +18,7 @@ namespace sigmaflow::workflows {
 inline constexpr const char* manifest_name = "manifest.json";
 inline constexpr const char* summary_name = "summary.json";
 inline constexpr const char* resolved_name = "resolved.json";
+inline constexpr const char* own_folder = ".sigmaflow";
 
 /// A file of a run, by its name relative to the folder.
 struct ResultFile {
@@ -38,6 +39,8 @@ bool is_inside(const std::filesystem::path& relative);
 class RunFolder {
 public:
     RunFolder(std::filesystem::path path, const std::string& workflow_name);
+    /// A folder to look at, of any kind or not there: no lock is taken, nothing is made.
+    static RunFolder to_read(const std::filesystem::path& path);
     ~RunFolder();
     RunFolder(const RunFolder&) = delete;
     RunFolder& operator=(const RunFolder&) = delete;
@@ -59,6 +62,8 @@ public:
     void remove_leftovers(const std::string& step) const;
 
 private:
+    explicit RunFolder(std::filesystem::path path);
+
     std::filesystem::path path_;
     std::vector<std::string> announced_;
     int lock_ = -1;

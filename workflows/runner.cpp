@@ -2,6 +2,7 @@
 
 #include "io/atomic_file.h"
 #include "workflows/forecast.h"
+#include "workflows/json_lines.h"
 #include "workflows/manifest.h"
 #include "workflows/parts.h"
 #include "workflows/report.h"
@@ -9,6 +10,7 @@
 #include "workflows/workflow.h"
 
 #include <chrono>
+#include <functional>
 #include <ostream>
 
 namespace sigmaflow::workflows {
@@ -70,9 +72,33 @@ StepRecord run_step(const Step& step, const StepIdentity& identity, Context& con
     return record;
 }
 
+/// Where the events go, nowhere without --json.
+using Tell = std::function<void(const Json&)>;
+
+Json event(const char* name, const Json& which, const Json& more = Json::object())
+{
+    Json result = {{"event", name}};
+    result.update(which);
+    result.update(more);
+    return result;
+}
+
+Progress::Listener told(const Tell& tell)
+{
+    return [&tell](std::string_view what, const std::string& text, double fraction, double left) {
+        if (what == "progress")
+            tell({{"event", what},
+                  {"fraction", fraction},
+                  {"seconds_left", left >= 0 ? Json(left) : Json(nullptr)},
+                  {"details", text}});
+        else
+            tell({{"event", what}, {"text", text}});
+    };
+}
+
 /// All steps; what they found out goes to the summary, how long they took to the manifest.
 void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json& summary,
-               Manifest& manifest)
+               Manifest& manifest, const Tell& tell)
 {
     const std::size_t count = workflow.steps.size();
     for (std::size_t k = 0; k < count; ++k) {
@@ -83,6 +109,10 @@ void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json
         title += std::to_string(k + 1) + "/" + std::to_string(count) + "] " + step.name;
         context.progress.begin(title);
         const bool done = planned.record.has_value();
+        const Json which = {
+            {"number", k + 1}, {"of", count}, {"name", step.name}, {"step", step.kind}};
+        const auto began = std::chrono::steady_clock::now();
+        tell(event("step_begin", which));
         if (done) {
             manifest.add_step(*planned.record);
             hand_on(std::move(*planned.record), context);
@@ -105,6 +135,11 @@ void run_steps(const Workflow& workflow, Resumption plan, Context& context, Json
         Json entry = {{"step", step.kind}};
         entry.update(context.results);
         summary["steps"][step.name] = std::move(entry);
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
+        tell(event("step_end", which,
+                   {{"seconds", taken.count()},
+                    {"from_earlier_run", done},
+                    {"results", context.results}}));
         const std::string line = one_line(summary["steps"][step.name]);
         context.progress.end(done ? line + ", from an earlier run" : line);
         // what an earlier run says of the steps to come is out of date
@@ -131,11 +166,19 @@ void run_workflow(const RunOptions& options, std::ostream& results)
     check_room(needed, room_here(folder.path()), document.root(), folder.path());
     remove_unused(plan, folder);
     remove_other_parts(folder, options.force ? std::vector<std::string>{} : workflow.step_names());
-    Progress progress = Progress::for_stderr(options.quiet);
+    const Tell tell = options.json ? Tell(print_json) : Tell([](const Json&) {});
+    Progress progress = Progress::for_stderr(options.quiet || options.json);
+    if (options.json) progress.tell(told(tell));
     Manifest manifest(workflow, options.workflow, options.overrides, options.threads);
     io::write_file(folder.path() / resolved_name,
                    workflow.standing_alone(options.workflow.parent_path()).dump(2) + "\n");
     manifest.write(folder, "running");
+    tell({{"event", "start"},
+          {"workflow", workflow.name},
+          {"folder", folder.path().string()},
+          {"steps", workflow.step_names()},
+          {"memory_bytes", needed.memory},
+          {"disk_bytes", needed.disk}});
     progress.note("writing to " + folder.path().string());
     if (needed.disk > 0) progress.note("needs about " + forecast_text(needed));
     for (const std::string& warning : plan.warnings) progress.warn(warning);
@@ -155,7 +198,7 @@ void run_workflow(const RunOptions& options, std::ostream& results)
                     .finished = {}};
     Json summary = {{"workflow", workflow.name}, {"steps", Json::object()}};
     try {
-        run_steps(workflow, std::move(plan), context, summary, manifest);
+        run_steps(workflow, std::move(plan), context, summary, manifest, tell);
         const std::string& first = context.problems.empty() ? "" : context.problems.front().text;
         manifest.write(folder, context.problems.empty() ? "complete" : "pictures missing", first);
     } catch (const std::exception& error) {
@@ -168,7 +211,8 @@ void run_workflow(const RunOptions& options, std::ostream& results)
         }
         throw;
     }
-    results << table(summary) << "results in " << folder.path().string() << "\n" << std::flush;
+    if (!options.json)
+        results << table(summary) << "results in " << folder.path().string() << "\n" << std::flush;
     if (!context.problems.empty())
         throw Error(ErrorKind::rendering, "",
                     std::to_string(context.problems.size()) +

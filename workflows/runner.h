@@ -14,6 +14,7 @@ struct RunOptions {
     std::vector<io::Override> overrides;       // of values in it
     std::optional<std::filesystem::path> out;  // default: out/<name of the file>
     bool quiet = false;                        // no progress on stderr
+    bool json = false;                         // events on stdout instead of the table
     int threads = 1;                           // results do not depend on it
     bool force = false;                        // nothing of an earlier run is used
     double checkpoint_interval = 30;           // [s] >= 0

@@ -238,7 +238,7 @@ Json written_workflow(const Workflow& workflow,
     io::Fields f;
     workflow.suspension->describe(f);
     Json& suspension = result["suspension"] = io::write_fields(f.list());
-    suspension.erase("radii_file");  // its numbers are among the radii
+    suspension.erase("radii_file");                     // its numbers are among the radii
     if (!workflow.suspension->packing.radii.empty()) {  // these exclude each other
         suspension.erase("size_ratio");
         suspension.erase("small_volume_share");

@@ -2,6 +2,7 @@
 #include "engine/error.h"
 #include "workflows/commands.h"
 #include "workflows/interruption.h"
+#include "workflows/json_lines.h"
 #include "workflows/runner.h"
 
 #include <CLI/CLI.hpp>
@@ -16,6 +17,20 @@ struct RunArguments {
     RunOptions options;
     std::string out, wall_time;
 };
+
+/// Runs; the last event says how it ended.
+void run_with_events(const RunOptions& options)
+{
+    const auto end = [](int code) { print_json({{"event", "end"}, {"exit_code", code}}); };
+    try {
+        run_workflow(options, std::cout);
+    } catch (const Error& error) {
+        print_json(error_event(error));
+        end(static_cast<int>(error.kind()));
+        throw Verdict(error.kind(), error.where(), error.problem());
+    }
+    end(0);
+}
 
 Work declare(CLI::App& app)
 {
@@ -43,6 +58,7 @@ Work declare(CLI::App& app)
         ->check(CLI::Range(1, 256))
         ->default_val(1);
     app.add_flag("-q,--quiet", options.quiet, "no progress, only results and errors");
+    describe_json(app, options.json);
     return [given, overrides, out, wall_time] {
         RunOptions& chosen = given->options;
         chosen.overrides = overrides();
@@ -57,6 +73,7 @@ Work declare(CLI::App& app)
                             "must be a time as 5400, 90m, 2h or D-HH:MM:SS, got \"" +
                                 given->wall_time + "\"");
         }
+        if (chosen.json) return run_with_events(chosen);
         run_workflow(chosen, std::cout);
         print_result("");
     };
@@ -70,7 +87,8 @@ Command run_command()
             R"(  sigmaflow run workflows/quickstart.json             results in out/quickstart
   sigmaflow run my_flow.json --out results/phi_0.56   results in a folder of your choice
   sigmaflow run my_flow.json --set /steps/1/stress=3  another value than in the file
-  sigmaflow run my_flow.json --max-walltime 2h        stops in time; the same command goes on)",
+  sigmaflow run my_flow.json --max-walltime 2h        stops in time; the same command goes on
+  sigmaflow run my_flow.json --json                   one event per line, for programs)",
             declare};
 }
 

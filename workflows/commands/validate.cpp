@@ -3,11 +3,13 @@
 
 #include "engine/error.h"
 #include "workflows/commands.h"
+#include "workflows/json_lines.h"
 
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 namespace sigmaflow::workflows {
 
@@ -32,12 +34,55 @@ void validate_files(const std::vector<std::string>& files,
     if (last) std::rethrow_exception(last);
 }
 
+nlohmann::ordered_json places_of(const Error& error)
+{
+    const auto place = [](const Error& one) {
+        return nlohmann::ordered_json{{"where", one.where()}, {"problem", one.problem()}};
+    };
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    if (const auto* several = dynamic_cast<const Errors*>(&error))
+        for (const Error& one : several->list()) list.push_back(place(one));
+    else
+        list.push_back(place(error));
+    return list;
+}
+
+/// One event for each file, with all errors.
+void validate_as_json(const std::vector<std::string>& files,
+                      const std::vector<io::Override>& overrides)
+{
+    std::optional<Error> last;
+    for (const std::string& file : files) {
+        nlohmann::ordered_json event = {{"event", "validate"}, {"file", file}, {"valid", true}};
+        try {
+            event["text"] = validate_file(file, overrides);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::missing) throw;
+            event["valid"] = false;
+            event["text"] = error.what();
+            event["errors"] = places_of(error);
+            last = error;
+        }
+        print_json(event);
+    }
+    if (last) throw Verdict(last->kind(), last->where(), last->problem());
+}
+
+struct ValidateArguments {
+    std::vector<std::string> files;
+    bool json = false;
+};
+
 Work declare(CLI::App& app)
 {
-    const auto files = std::make_shared<std::vector<std::string>>();
-    app.add_option("FILE", *files, "the files")->required();
+    const auto given = std::make_shared<ValidateArguments>();
+    app.add_option("FILE", given->files, "the files")->required();
     const auto overrides = declare_overrides(app);
-    return [files, overrides] { validate_files(*files, overrides()); };
+    describe_json(app, given->json);
+    return [given, overrides] {
+        given->json ? validate_as_json(given->files, overrides())
+                    : validate_files(given->files, overrides());
+    };
 }
 
 }
