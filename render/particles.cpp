@@ -54,6 +54,16 @@ bool holds_whole_numbers(vtkDataArray* array)
     return array->GetNumberOfComponents() == 1 && type != VTK_FLOAT && type != VTK_DOUBLE;
 }
 
+/// From the data, but for the ends that the view fixes.
+Range ends_of_colours(const ParticleView& view, const std::vector<double>& values,
+                      bool whole_numbers)
+{
+    Range range = colour_range(values, whole_numbers);
+    if (view.colour_minimum) range.from = *view.colour_minimum;
+    if (view.colour_maximum) range.to = *view.colour_maximum;
+    return range;
+}
+
 ColourScale colour_scale(const ParticleView& view, const std::vector<double>& values,
                          bool whole_numbers)
 {
@@ -61,9 +71,7 @@ ColourScale colour_scale(const ParticleView& view, const std::vector<double>& va
     scale.map = view.colour_map;
     scale.whole_numbers = whole_numbers;
     scale.label = view.colour_label.empty() ? array_label(view.colour_by) : view.colour_label;
-    scale.range = colour_range(values, whole_numbers);
-    if (view.colour_minimum) scale.range.from = *view.colour_minimum;
-    if (view.colour_maximum) scale.range.to = *view.colour_maximum;
+    scale.range = ends_of_colours(view, values, whole_numbers);
     if (!std::isfinite(scale.range.to - scale.range.from) || scale.range.from >= scale.range.to)
         throw Error(ErrorKind::input, "colour range",
                     "colour_minimum must be below colour_maximum, got " +
@@ -104,28 +112,64 @@ void check(const ParticleView& view)
         if (size < 64 || size > 16384)
             throw Error(ErrorKind::input, "picture",
                         "the size must be in [64, 16384] pixels, got " + std::to_string(size));
+    if (!(view.zoom >= 0.1 && view.zoom <= 100))
+        throw Error(ErrorKind::input, "picture",
+                    "zoom must be in [0.1, 100], got " + std::to_string(view.zoom));
+}
+
+double coordinate(const Position& p, int axis)
+{
+    return p[static_cast<std::size_t>(axis)];
+}
+
+/// Takes away what the plane hides.
+void clip(ParticleScene& scene, const ClipPlane& plane)
+{
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (const ColouredSphere& s : scene.spheres) {
+        lowest = std::min(lowest, coordinate(s.sphere.centre, plane.axis));
+        highest = std::max(highest, coordinate(s.sphere.centre, plane.axis));
+    }
+    const std::size_t all = scene.spheres.size();
+    std::erase_if(scene.spheres,
+                  [&](const ColouredSphere& s) { return plane.hides(s.sphere.centre); });
+    std::erase_if(scene.rods, [&](const ColouredRod& rod) {
+        return plane.hides(rod.from) || plane.hides(rod.to);
+    });
+    if (scene.spheres.empty() && all > 0)
+        throw Error(ErrorKind::input, "clip",
+                    std::string("hides all particles, their centres have ") + "xyz"[plane.axis] +
+                        " from " + std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
+/// The corners of the box, if there is one.
+std::vector<Sphere> corners(const std::array<double, 3>& length, double radius)
+{
+    std::vector<Sphere> spheres;
+    for (int corner = 0; corner < 8; ++corner)
+        if (length[0] > 0 && length[1] > 0 && length[2] > 0)
+            spheres.push_back({{corner & 1 ? length[0] : 0, corner & 2 ? length[1] : 0,
+                                corner & 4 ? length[2] : 0},
+                               radius});
+    return spheres;
 }
 
 /// Everything that has to be in the picture.
 std::vector<Sphere> contents(const ParticleScene& scene)
 {
-    std::vector<Sphere> spheres;
+    std::vector<Sphere> spheres = corners(scene.box_length, 0);
     for (const ColouredSphere& s : scene.spheres) spheres.push_back(s.sphere);
     for (const ColouredRod& rod : scene.rods)
         for (const Position& end : {rod.from, rod.to}) spheres.push_back({end, rod.radius});
-    const auto& length = scene.box_length;
-    for (int corner = 0; corner < 8; ++corner)
-        if (length[0] > 0 && length[1] > 0 && length[2] > 0)
-            spheres.push_back({{corner & 1 ? length[0] : 0, corner & 2 ? length[1] : 0,
-                                corner & 4 ? length[2] : 0},
-                               0});
     if (spheres.empty())
         throw Error(ErrorKind::input, "picture", "there are no particles and no box to draw");
     return spheres;
 }
 
-/// The scene with its camera, and everything around it.
-Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleView& view)
+/// The scene with its camera, and everything around it. No frame of a run sticks out of the box by
+/// more than `margin`: steady pictures have room for that.
+Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleView& view,
+                 double margin)
 {
     const ParticleLayout layout =
         particle_layout(view.width, view.height, !view.title.empty(), view.colour_bar, view.triad);
@@ -133,13 +177,21 @@ Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleVi
     scene.ambient_occlusion = view.ambient_occlusion;
     scene.antialiasing = view.antialiasing;
     const Rectangle& room = layout.particles;
-    scene.camera = frame_spheres(contents(scene), static_cast<int>(room.width()),
-                                 static_cast<int>(room.height()));
+    std::vector<Sphere> seen;
+    if (view.steady) seen = corners(view.box_length, margin);
+    if (seen.empty()) seen = contents(scene);
+    // before anything is hidden: the camera stands where it stands without the plane
+    scene.camera = frame_spheres(seen, static_cast<int>(room.width()),
+                                 static_cast<int>(room.height()), view.direction, view.zoom);
+    if (view.clip) clip(scene, *view.clip);
+    for (const ColouredRod& rod : scene.rods)  // round ends
+        for (const Position& end : {rod.from, rod.to})
+            scene.spheres.push_back({{end, rod.radius}, rod.colour});
 
     const Fonts fonts;
     Drawing drawing{view.width, view.height, {}};
     if (view.colour_bar) draw_colour_bar(drawing, fonts, scale, layout);
-    if (view.triad) draw_triad(drawing, fonts, layout);
+    if (view.triad) draw_triad(drawing, fonts, layout, scene.camera.axes);
     if (!view.title.empty()) draw_title(drawing, fonts, view.title, layout);
 
     Image image(view.width, view.height);
@@ -174,22 +226,50 @@ std::vector<ColouredRod> strong_rods(vtkPolyData* contacts, const std::vector<do
     return rods;
 }
 
+double largest_radius(const ParticleScene& scene)
+{
+    double largest = 0;
+    for (const ColouredSphere& s : scene.spheres) largest = std::max(largest, s.sphere.radius);
+    return largest;
+}
+
+struct Values {
+    std::vector<double> list;
+    bool whole_numbers = false;
+};
+
+Values values_of(vtkDataSetAttributes* arrays, vtkIdType count, const ParticleView& view)
+{
+    if (count == 0) return {};
+    vtkDataArray* array = array_of(arrays, view.colour_by, "colour_by");
+    return {magnitudes(array), holds_whole_numbers(array)};
+}
+
+}
+
+Range particle_colours(vtkPolyData* particles, const ParticleView& view)
+{
+    const Values values =
+        values_of(particles->GetPointData(), particles->GetNumberOfPoints(), view);
+    return ends_of_colours(view, values.list, values.whole_numbers);
+}
+
+Range chain_colours(vtkPolyData* contacts, const ParticleView& view)
+{
+    const Values values = values_of(contacts->GetCellData(), contacts->GetNumberOfCells(), view);
+    return ends_of_colours(view, values.list, false);
 }
 
 Image render_particles(vtkPolyData* particles, const ParticleView& view)
 {
     check(view);
-    std::vector<double> values;
-    bool whole_numbers = false;
-    if (particles->GetNumberOfPoints() > 0) {
-        vtkDataArray* array = array_of(particles->GetPointData(), view.colour_by, "colour_by");
-        values = magnitudes(array);
-        whole_numbers = holds_whole_numbers(array);
-    }
-    const ColourScale scale = colour_scale(view, values, whole_numbers);
+    const Values values =
+        values_of(particles->GetPointData(), particles->GetNumberOfPoints(), view);
+    const ColourScale scale = colour_scale(view, values.list, values.whole_numbers);
     ParticleScene scene;
-    scene.spheres = coloured_spheres(particles, values, scale);
-    return picture_of(std::move(scene), scale, view);
+    scene.spheres = coloured_spheres(particles, values.list, scale);
+    const double margin = largest_radius(scene);
+    return picture_of(std::move(scene), scale, view, margin);
 }
 
 Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const ParticleView& view)
@@ -197,13 +277,13 @@ Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const Particl
     check(view);
     constexpr Colour grey{176, 176, 182};
     constexpr double shown = 0.22;  // of the radii
-    std::vector<double> values;
-    if (contacts->GetNumberOfCells() > 0)
-        values = magnitudes(array_of(contacts->GetCellData(), view.colour_by, "colour_by"));
+    const std::vector<double> values =
+        values_of(contacts->GetCellData(), contacts->GetNumberOfCells(), view).list;
     const ColourScale scale = colour_scale(view, values, false);
     ParticleScene scene;
     scene.spheres =
         coloured_spheres(particles, std::vector<double>(particles->GetNumberOfPoints()), scale);
+    const double margin = 2 * largest_radius(scene);  // contacts end in images of particles
     double smallest = std::numeric_limits<double>::infinity();
     for (ColouredSphere& s : scene.spheres) {
         smallest = std::min(smallest, s.sphere.radius);
@@ -211,10 +291,7 @@ Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const Particl
         s.colour = grey;
     }
     scene.rods = strong_rods(contacts, values, scale, smallest);
-    for (const ColouredRod& rod : scene.rods)  // round ends
-        for (const Position& end : {rod.from, rod.to})
-            scene.spheres.push_back({{end, rod.radius}, rod.colour});
-    return picture_of(std::move(scene), scale, view);
+    return picture_of(std::move(scene), scale, view, margin);
 }
 
 }
