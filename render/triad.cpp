@@ -119,20 +119,29 @@ void draw_end_of_axis(Drawing& drawing, Point at, bool to_viewer, double unit)
 void draw_triad(Drawing& drawing, const Fonts& fonts, const ParticleLayout& layout,
                 const ViewAxes& axes)
 {
-    const double unit = layout.unit, size = triad_font * unit;
     const std::array<Arrow, 3> arrows = seen_axes(axes);
+    double unit = layout.unit, size = triad_font * unit;
     Point origin{layout.triad.left + 116 * unit, layout.triad.bottom - 92 * unit};
     const auto place = [&](const Arrow& arrow) {
         return label_place(arrow, arrows, origin, unit, text_width(fonts, arrow.label) * size);
     };
-    // Moved until all labels are inside; usually they are. The margins around may be used, too.
-    Rectangle all{1e9, 1e9, -1e9, -1e9};
-    for (const Arrow& arrow : arrows) all = around(all, place(arrow).area);
+    const auto room_for_all = [&] {
+        Rectangle all{1e9, 1e9, -1e9, -1e9};
+        for (const Arrow& arrow : arrows) all = around(all, place(arrow).area);
+        return all;
+    };
+    // Shrunk and moved until all labels are inside; usually they are. The margins may be used, too.
     const double slack = 14 * unit;
-    origin.x -= std::max(0., all.right - layout.triad.right);
-    origin.x += std::max(0., layout.triad.left - slack - all.left);
-    origin.y += std::max(0., layout.triad.top - all.top);
-    origin.y -= std::max(0., all.bottom - layout.triad.bottom - slack);
+    const Rectangle area{layout.triad.left - slack, layout.triad.top, layout.triad.right - 4 * unit,
+                         layout.triad.bottom + slack};
+    Rectangle all = room_for_all();
+    unit *= std::min({1., area.width() / all.width(), area.height() / all.height()});
+    size = triad_font * unit;
+    all = room_for_all();
+    origin.x -= std::max(0., all.right - area.right);
+    origin.x += std::max(0., area.left - room_for_all().left);
+    origin.y += std::max(0., area.top - all.top);
+    origin.y -= std::max(0., all.bottom - area.bottom);
 
     for (const Arrow& arrow : arrows) {
         if (arrow.is_seen_from_its_end())

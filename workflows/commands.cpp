@@ -8,8 +8,8 @@ namespace sigmaflow::workflows {
 
 std::span<const Command> commands()
 {
-    static const std::array list{run_command(), validate_command(), evaluate_command(),
-                                 report_command(), steps_command()};
+    static const std::array list{run_command(),    validate_command(), evaluate_command(),
+                                 report_command(), render_command(),   steps_command()};
     return list;
 }
 
@@ -20,6 +20,7 @@ constexpr const char* program_help = R"(examples:
   sigmaflow steps shear                               the parameters of one step
   sigmaflow validate my_flow.json                     what is wrong with a workflow
   sigmaflow report out/quickstart                     one HTML page of a run: report.html
+  sigmaflow render out/quickstart --view front        a new picture of its last frame
   sigmaflow run --help                                options and examples of a command
 
 a run that was interrupted or killed goes on with the same command

@@ -31,6 +31,7 @@ Command run_command();
 Command validate_command();
 Command evaluate_command();
 Command report_command();
+Command render_command();
 Command steps_command();
 
 inline constexpr std::string_view program_summary =

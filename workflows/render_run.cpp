@@ -182,6 +182,12 @@ render::ParticleView common_view(const RenderOptions& options, const RunFrames& 
 
 }
 
+std::string option_name(std::string parameter)
+{
+    std::replace(parameter.begin(), parameter.end(), '_', '-');
+    return parameter;
+}
+
 void set_option(ParticlePicture& picture, const std::string& name, const Json& value)
 {
     io::Fields fields;
@@ -192,9 +198,7 @@ void set_option(ParticlePicture& picture, const std::string& name, const Json& v
         io::read_fields(document.root(), fields.list());
         picture.validate(document.root());
     } catch (const Error& error) {
-        std::string option = "--" + name;
-        std::replace(option.begin(), option.end(), '_', '-');
-        refuse(option, error.problem());
+        refuse("--" + option_name(name), error.problem());
     }
 }
 

@@ -28,8 +28,11 @@ struct RenderOptions {
     ParticlePicture picture;
 };
 
+/// colour_by is --colour-by.
+std::string option_name(std::string parameter);
+
 /// One parameter of the picture as it comes from the command line, checked as in a workflow file;
-/// Error(usage) names the option: colour_by is --colour-by.
+/// Error(usage) names the option.
 void set_option(ParticlePicture& picture, const std::string& name,
                 const nlohmann::ordered_json& value);
 
