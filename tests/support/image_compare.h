@@ -1,19 +1,12 @@
-// tests/support/image_compare.h -- are two pictures the same, to the eye and to the byte?
+// tests/support/image_compare.h -- pictures against those that people have looked at.
 #pragma once
 #include "render/image.h"
+#include "tests/support/similarity.h"
 
 #include <gtest/gtest.h>
 #include <string>
 
 namespace sigmaflow::test {
-
-/// Mean structural similarity in [-1, 1] of two pictures of equal size, 1 for identical ones
-/// (Wang, Bovik, Sheikh, Simoncelli, IEEE Trans. Image Process. 13, 600, 2004): windows of 8 x 8
-/// pixels every 4 pixels, the three colours averaged, constants 0.01 and 0.03 as in the source.
-double similarity(const render::Image& a, const render::Image& b);
-
-/// Largest difference of a colour channel, 0..255. Pictures of equal size.
-int largest_difference(const render::Image& a, const render::Image& b);
 
 /// Compares with tests/images/<name>.png. If that is missing or not similar enough, the picture is
 /// left in image_candidates/<name>.png of the working folder and the message names both.

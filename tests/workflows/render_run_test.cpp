@@ -4,7 +4,6 @@
 
 #include "io/run_file.h"
 #include "io/run_journal.h"
-#include "tests/support/image_compare.h"
 #include "tests/workflows/program.h"
 #include "workflows/commands.h"
 
