@@ -2,42 +2,66 @@
 #include "tests/support/image_compare.h"
 
 #include "engine/error.h"
+#include "tests/support/difference_page.h"
 
-#include <filesystem>
-#include <fstream>
+#include <cstdio>
 
 namespace sigmaflow::test {
 namespace {
 
-std::string keep_candidate(const render::Image& image, const std::string& name)
+/// Of all pixels; a plot without curves still has its axes, an empty picture nothing.
+constexpr double least_drawn = 0.01;
+
+std::string number(double value)
 {
-    const auto folder = std::filesystem::current_path() / "image_candidates";
-    std::filesystem::create_directories(folder);
-    const auto path = folder / (name + ".png");
-    std::ofstream(path, std::ios::binary) << render::png_bytes(image);
-    return path.string();
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4f", value);
+    return text;
 }
 
+}
+
+PictureFolders usual_folders()
+{
+    return {SIGMAFLOW_TEST_IMAGES, SIGMAFLOW_IMAGE_CANDIDATES};
 }
 
 testing::AssertionResult matches_baseline(const render::Image& image, const std::string& name,
-                                          double least_similarity)
+                                          double least_similarity, const PictureFolders& folders)
 {
-    const auto path = std::filesystem::path(SIGMAFLOW_TEST_IMAGES) / (name + ".png");
-    render::Image baseline;
+    const auto path = folders.baselines / (name + ".png");
+    Difference found{.name = name,
+                     .accepted = path,
+                     .drawn = image,
+                     .baseline = {},
+                     .score = 0,
+                     .least = least_similarity,
+                     .reason = ""};
     try {
-        baseline = render::read_png(path);
+        found.baseline = render::read_png(path);
     } catch (const Error& error) {
-        return testing::AssertionFailure()
-               << "no baseline: " << error.what() << "; if the picture "
-               << keep_candidate(image, name) << " is right, copy it to " << path;
+        found.reason = std::string("no baseline: ") + error.what();
     }
-    const bool same_size = baseline.width == image.width && baseline.height == image.height;
-    const double found = same_size ? similarity(image, baseline) : -1;
-    if (found >= least_similarity) return testing::AssertionSuccess();
+    if (found.baseline) {
+        const bool same_size =
+            found.baseline->width == image.width && found.baseline->height == image.height;
+        if (same_size) found.score = similarity(image, *found.baseline);
+        if (!same_size)
+            found.reason = "another size than the baseline";
+        else if (found.score < least_similarity)
+            found.reason = "similarity " + number(found.score) + ", at least " +
+                           number(least_similarity) + " is asked for";
+    }
+    if (const double drawn = drawn_share(image); drawn < least_drawn)
+        found.reason = "blank: only " + number(drawn) + " of the pixels differ from the background";
+    if (found.reason.empty()) {
+        remove_difference(folders.candidates, name);
+        return testing::AssertionSuccess();
+    }
+    const auto drawn = add_difference(folders.candidates, found);
     return testing::AssertionFailure()
-           << "the picture " << keep_candidate(image, name) << " differs from the baseline " << path
-           << ": similarity " << found << ", at least " << least_similarity << " is asked for";
+           << name << ": " << found.reason << "; see " << folders.candidates / page_name
+           << "; if the picture is right: cp " << drawn << " " << path;
 }
 
 }

@@ -2,8 +2,10 @@
 #include "tests/support/similarity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 namespace sigmaflow::test {
 namespace {
@@ -57,6 +59,16 @@ int largest_difference(const render::Image& a, const render::Image& b)
     for (std::size_t i = 0; i < a.rgb.size(); ++i)
         largest = std::max(largest, std::abs(int(a.rgb[i]) - int(b.rgb[i])));
     return largest;
+}
+
+double drawn_share(const render::Image& image)
+{
+    std::map<std::array<std::uint8_t, 3>, long> counts;
+    long most = 0;
+    for (std::size_t k = 0; k + 2 < image.rgb.size(); k += 3)
+        most = std::max(most, ++counts[{image.rgb[k], image.rgb[k + 1], image.rgb[k + 2]}]);
+    const double all = static_cast<double>(image.rgb.size()) / 3;
+    return all > 0 ? 1 - static_cast<double>(most) / all : 0;
 }
 
 }

@@ -12,4 +12,7 @@ double similarity(const render::Image& a, const render::Image& b);
 /// Largest difference of a colour channel, 0..255. Pictures of equal size.
 int largest_difference(const render::Image& a, const render::Image& b);
 
+/// Share of the pixels that differ from the most frequent colour: 0 for an empty picture.
+double drawn_share(const render::Image& image);
+
 }
