@@ -108,7 +108,7 @@ body { font: 15px sans-serif; margin: 2em }
 th, td { padding: 0.6em; border-bottom: 1px solid #bbb; vertical-align: top; text-align: left }
 img { border: 1px solid #ddd; max-width: 24em }
 p { font-weight: normal; color: #555 }
-code { white-space: pre-wrap }
+code { overflow-wrap: anywhere }
 </style></head><body>
 <h1>)" + std::to_string(rows.size()) +
                        R"( pictures differ from their baselines</h1>
