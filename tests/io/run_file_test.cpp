@@ -443,8 +443,8 @@ TEST_F(DamagedRun, IsRefusedWhenItComesFromALaterVersion)
 TEST_F(DamagedRun, IsReadWhenItComesFromTheFirstVersion)
 {
     change([](hid_t file) { set_schema(file, 1); });
-    EXPECT_NO_THROW(read_run(path));
-    EXPECT_NO_THROW(check_run(path));
+    EXPECT_NO_THROW(read_run(path_));
+    EXPECT_NO_THROW(check_run(path_));
 }
 
 }
