@@ -12,6 +12,21 @@ namespace {
 
 constexpr std::size_t most_waiting_samples = 256;  // written together
 
+/// Numbers the recorded instants, so that equal steps are equal times in all of the file.
+class Instants {
+public:
+    std::int64_t at(double time)
+    {
+        if (step_ < 0 || time != last_) ++step_;
+        last_ = time;
+        return step_;
+    }
+
+private:
+    std::int64_t step_ = -1;
+    double last_ = 0;
+};
+
 /// Step and time of H5MD elements that are sampled together: stored once, linked into every
 /// element.
 class Clock {
@@ -35,9 +50,9 @@ public:
         return grow<T>(group, "value", shape, unit);
     }
 
-    void tick(double time)
+    void tick(std::int64_t step, double time)
     {
-        step_.append(std::vector<std::int64_t>{static_cast<std::int64_t>(step_.rows())});
+        step_.append(std::vector<std::int64_t>{step});
         time_.append(std::vector<double>{time});
     }
 
@@ -138,7 +153,7 @@ public:
         });
     }
 
-    void append(const Frame& frame)
+    void append(const Frame& frame, std::int64_t step)
     {
         const State& state = frame.state;
         scalars_[0].append(box_edges(state.box));
@@ -160,7 +175,7 @@ public:
         samples_.append({frame.sample});
         springs_.append(state.contacts);
         contacts_.append(frame.contacts);
-        clock_.tick(state.time);
+        clock_.tick(step, state.time);
     }
 
 private:
@@ -191,7 +206,9 @@ struct RunWriter::Impl {
     std::filesystem::path path, part;
     Hdf5Group file;
     std::vector<double> radius;
+    Instants instants = {};
     std::vector<Sample> waiting = {};
+    std::vector<std::int64_t> waiting_steps = {};
     // All datasets; gone when the file is closed.
     struct Tables {
         Clock clock;
@@ -203,8 +220,10 @@ struct RunWriter::Impl {
     void write_waiting()
     {
         tables->series.append(waiting);
-        for (const Sample& sample : waiting) tables->clock.tick(sample.time);
+        for (std::size_t k = 0; k < waiting.size(); ++k)
+            tables->clock.tick(waiting_steps[k], waiting[k].time);
         waiting.clear();
+        waiting_steps.clear();
     }
 };
 
@@ -242,6 +261,7 @@ RunWriter::RunWriter(RunWriter&&) noexcept = default;
 void RunWriter::append(const Sample& sample)
 {
     impl_->waiting.push_back(sample);
+    impl_->waiting_steps.push_back(impl_->instants.at(sample.time));
     if (impl_->waiting.size() >= most_waiting_samples) impl_->write_waiting();
 }
 
@@ -250,7 +270,7 @@ void RunWriter::append(const Frame& frame)
     if (frame.state.radius != impl_->radius)
         throw Error(ErrorKind::internal, impl_->path.string(),
                     "the radii must not change in a run");
-    impl_->tables->frames.append(frame);
+    impl_->tables->frames.append(frame, impl_->instants.at(frame.state.time));
 }
 
 void RunWriter::flush()

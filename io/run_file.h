@@ -29,6 +29,7 @@ public:
     ~RunWriter();
     RunWriter(RunWriter&&) noexcept;
 
+    /// Samples and frames come in the order of their times.
     void append(const Sample& sample);
     /// Error(internal) if the particles are not those of the first state.
     void append(const Frame& frame);

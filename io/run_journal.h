@@ -37,4 +37,8 @@ struct JournalVisitor {
 /// One entry after the other; the journal may be larger than the memory.
 void read_journal(const std::filesystem::path& path, const JournalVisitor& visitor);
 
+/// The same for the journal of a step that may be running or was killed: an entry that is cut at
+/// the end is not there yet.
+void read_journal_so_far(const std::filesystem::path& path, const JournalVisitor& visitor);
+
 }

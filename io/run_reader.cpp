@@ -177,10 +177,11 @@ Hdf5Group open_run(const std::filesystem::path& path)
 {
     Hdf5Group file = Hdf5Group::open_file(path);
     const double schema = read_number(file, "sigmaflow_schema");
-    if (schema != run_schema_version)
+    if (schema != run_schema_version && schema != oldest_run_schema_version)
         throw Error(ErrorKind::input, path.string(),
-                    "must have the schema " + std::to_string(run_schema_version) +
-                        " of this sigmaflow, got " + number_text(schema));
+                    "must have the schema " + std::to_string(oldest_run_schema_version) + " or " +
+                        std::to_string(run_schema_version) + " of this sigmaflow, got " +
+                        number_text(schema));
     return file;
 }
 

@@ -14,7 +14,9 @@
 
 namespace sigmaflow::io {
 
-inline constexpr int run_schema_version = 1;
+/// 2: the steps of H5MD count the recorded instants of the whole file. In schema 1, which is read as
+/// well, samples and frames were counted by themselves.
+inline constexpr int run_schema_version = 2, oldest_run_schema_version = 1;
 
 /// Per particle and frame, elements of /particles/trajectory; the first one is H5MD's position.
 template <class Visit>

@@ -28,12 +28,6 @@ Position cross(const Position& a, const Position& b)
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Position unit(const Position& a)
-{
-    const double length = std::sqrt(dot(a, a));
-    return {a[0] / length, a[1] / length, a[2] / length};
-}
-
 /// Interval of x/z that a sphere covers, seen from the origin along z: its two tangents.
 std::pair<double, double> seen_interval(double x, double z, double radius)
 {
@@ -45,7 +39,7 @@ std::pair<double, double> seen_interval(double x, double z, double radius)
 /// What the spheres cover on the plane at distance 1 in front of the camera.
 Rectangle seen(const std::vector<Sphere>& spheres, const Camera& camera)
 {
-    const ViewAxes axes = view_axes();
+    const ViewAxes& axes = camera.axes;
     const Position eye = camera.position();
     Rectangle r{1e9, 1e9, -1e9, -1e9};
     for (const Sphere& sphere : spheres) {
@@ -61,16 +55,20 @@ Rectangle seen(const std::vector<Sphere>& spheres, const Camera& camera)
 
 }
 
-ViewAxes view_axes()
+ViewAxes view_axes(const ViewDirection& direction)
 {
-    const Position away = unit({-0.42, -0.29, -1.0});
-    const Position right = unit(cross(away, {0, 1, 0}));
+    const double azimuth = direction.azimuth * std::numbers::pi / 180;
+    const double elevation = direction.elevation * std::numbers::pi / 180;
+    const double level = std::cos(elevation);
+    const Position away{-std::sin(azimuth) * level, -std::sin(elevation),
+                        -std::cos(azimuth) * level};
+    const Position right{std::cos(azimuth), 0, -std::sin(azimuth)};
     return {right, cross(right, away), away};
 }
 
 Position Camera::position() const
 {
-    return plus(focus, -distance, view_axes().away);
+    return plus(focus, -distance, axes.away);
 }
 
 double Camera::view_angle() const
@@ -80,19 +78,19 @@ double Camera::view_angle() const
 
 double Camera::depth(const Position& p) const
 {
-    return dot(minus(p, position()), view_axes().away);
+    return dot(minus(p, position()), axes.away);
 }
 
 Point Camera::project(const Position& p) const
 {
-    const ViewAxes axes = view_axes();
     const Position seen_from_eye = minus(p, position());
     const double scale = 0.5 * height / (half_height * dot(seen_from_eye, axes.away));
     return {0.5 * width + scale * dot(seen_from_eye, axes.right),
             0.5 * height - scale * dot(seen_from_eye, axes.up)};
 }
 
-Camera frame_spheres(const std::vector<Sphere>& spheres, int width, int height)
+Camera frame_spheres(const std::vector<Sphere>& spheres, int width, int height,
+                     const ViewDirection& direction, double zoom)
 {
     Position low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
     double largest_radius = 0;
@@ -104,7 +102,7 @@ Camera frame_spheres(const std::vector<Sphere>& spheres, int width, int height)
         }
     }
     const Position diagonal = minus(high, low);
-    Camera camera;
+    Camera camera{.axes = view_axes(direction)};
     camera.focus = plus(low, 0.5, diagonal);
     // Far enough for a gentle perspective; and VTK's imposters and shadows of spheres are wrong
     // when a sphere is seen from near by.
@@ -112,7 +110,7 @@ Camera frame_spheres(const std::vector<Sphere>& spheres, int width, int height)
         std::max({1e-6, 2.4 * std::sqrt(dot(diagonal, diagonal)), 50 * largest_radius});
 
     // Moving the camera sideways changes the perspective a little, so this takes a few rounds.
-    const ViewAxes axes = view_axes();
+    const ViewAxes& axes = camera.axes;
     Rectangle area{};
     for (int round = 0; round < 6; ++round) {
         area = seen(spheres, camera);
@@ -122,7 +120,7 @@ Camera frame_spheres(const std::vector<Sphere>& spheres, int width, int height)
     }
     const double margin = 1.01, half_wide = margin * area.width() / 2;
     const double half_high = margin * area.height() / 2;
-    const double pixels = std::min(width / (2 * half_wide), height / (2 * half_high));
+    const double pixels = zoom * std::min(width / (2 * half_wide), height / (2 * half_high));
     camera.width = std::clamp(static_cast<int>(std::ceil(2 * half_wide * pixels)), 1, width);
     camera.height = std::clamp(static_cast<int>(std::ceil(2 * half_high * pixels)), 1, height);
     camera.half_height = camera.height / (2 * pixels);

@@ -6,14 +6,13 @@
 #include "render/rich_text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace sigmaflow::render {
 namespace {
 
 constexpr Colour line_colour{30, 30, 36};
-constexpr double label_font = 34, tick_font = 30, triad_font = 26;
+constexpr double label_font = 34, tick_font = 30;
 constexpr int colour_steps = 7;
 
 double quantile(std::vector<double>& values, double share)
@@ -60,36 +59,6 @@ std::string tick_text(const Tick& tick, const ColourScale& scale)
     if (scale.values_above && tick.value > scale.range.to - slack) return "≥ " + tick.label;
     if (scale.values_below && tick.value < scale.range.from + slack) return "≤ " + tick.label;
     return tick.label;
-}
-
-struct Arrow {
-    Point tip;
-    const char* label;
-};
-
-/// The axes as the viewer sees them, of length 1, y downwards.
-std::array<Arrow, 3> seen_axes()
-{
-    const ViewAxes axes = view_axes();
-    const auto seen = [&](int d) { return Point{axes.right[d], -axes.up[d]}; };
-    return {{{seen(0), "flow $x$"}, {seen(1), "gradient $y$"}, {seen(2), "vorticity $z$"}}};
-}
-
-void draw_arrow(Drawing& drawing, Point from, Point to, double unit)
-{
-    const double length = std::hypot(to.x - from.x, to.y - from.y);
-    const Point along{(to.x - from.x) / length, (to.y - from.y) / length};
-    const double head = std::min(24 * unit, 0.6 * length), half = 8.5 * unit;
-    const Point neck{to.x - head * along.x, to.y - head * along.y};
-    const Point notch{to.x - 0.8 * head * along.x, to.y - 0.8 * head * along.y};
-    drawing.stroke(
-        {.points = {from, notch}, .ink = {line_colour}, .width = 4 * unit, .dashes = {}});
-    drawing.fill({{{to,
-                    {neck.x - half * along.y, neck.y + half * along.x},
-                    notch,
-                    {neck.x + half * along.y, neck.y - half * along.x}}},
-                  {line_colour},
-                  {}});
 }
 
 }
@@ -183,30 +152,6 @@ void draw_colour_bar(Drawing& drawing, const Fonts& fonts, const ColourScale& sc
     const double centre = std::clamp(bar.left + 56 * unit, from + half, to - half + 1e-9);
     draw_text(drawing, fonts, scale.label, {centre, bar.top - 58 * unit},
               {.size = label_size, .align = Align::centre});
-}
-
-void draw_triad(Drawing& drawing, const Fonts& fonts, const ParticleLayout& layout)
-{
-    const double unit = layout.unit, length = 128 * unit, size = triad_font * unit;
-    const Rectangle& area = layout.triad;
-    const Point origin{area.left + 116 * unit, area.bottom - 92 * unit};
-    const auto tip = [&](const Arrow& arrow) {
-        return Point{origin.x + length * arrow.tip.x, origin.y + length * arrow.tip.y};
-    };
-    const auto [flow, gradient, vorticity] = seen_axes();
-    for (const Arrow& arrow : {flow, gradient, vorticity})
-        draw_arrow(drawing, origin, tip(arrow), unit);
-    drawing.fill({{circle_contour(origin, 4.5 * unit)}, {line_colour}, {}});
-
-    // Beyond the tips: above the gradient arrow, right of the flow arrow, below the vorticity
-    // arrow.
-    const Point x = tip(flow), y = tip(gradient), z = tip(vorticity);
-    draw_text(drawing, fonts, flow.label, {x.x + 12 * unit, x.y + 0.5 * small_height * size},
-              {.size = size});
-    draw_text(drawing, fonts, gradient.label, {y.x, y.y - 14 * unit},
-              {.size = size, .align = Align::centre});
-    draw_text(drawing, fonts, vorticity.label, {z.x, z.y + 12 * unit + capital_height * size},
-              {.size = size, .align = Align::centre});
 }
 
 void draw_title(Drawing& drawing, const Fonts& fonts, const std::string& title,

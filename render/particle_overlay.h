@@ -2,6 +2,7 @@
 #pragma once
 #include "render/drawing.h"
 #include "render/fonts.h"
+#include "render/framing.h"
 #include "render/ticks.h"
 
 #include <string>
@@ -36,7 +37,9 @@ ParticleLayout particle_layout(int width, int height, bool title, bool colour_ba
 
 void draw_colour_bar(Drawing& drawing, const Fonts& fonts, const ColourScale& scale,
                      const ParticleLayout& layout);
-void draw_triad(Drawing& drawing, const Fonts& fonts, const ParticleLayout& layout);
+/// An axis that points at the viewer is a dot, one that points away a cross, both in a circle.
+void draw_triad(Drawing& drawing, const Fonts& fonts, const ParticleLayout& layout,
+                const ViewAxes& axes = view_axes());
 void draw_title(Drawing& drawing, const Fonts& fonts, const std::string& title,
                 const ParticleLayout& layout);
 

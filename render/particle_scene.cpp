@@ -173,7 +173,7 @@ void place_camera(vtkRenderer* renderer, const Camera& camera)
     vtkCamera* vtk = renderer->GetActiveCamera();
     vtk->SetFocalPoint(camera.focus.data());
     vtk->SetPosition(camera.position().data());
-    vtk->SetViewUp(0, 1, 0);
+    vtk->SetViewUp(camera.axes.up.data());
     vtk->SetViewAngle(camera.view_angle());
 }
 

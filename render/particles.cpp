@@ -104,6 +104,34 @@ void check(const ParticleView& view)
         if (size < 64 || size > 16384)
             throw Error(ErrorKind::input, "picture",
                         "the size must be in [64, 16384] pixels, got " + std::to_string(size));
+    if (!(view.zoom >= 0.1 && view.zoom <= 100))
+        throw Error(ErrorKind::input, "picture",
+                    "zoom must be in [0.1, 100], got " + std::to_string(view.zoom));
+}
+
+double coordinate(const Position& p, int axis)
+{
+    return p[static_cast<std::size_t>(axis)];
+}
+
+/// Takes away what the plane hides.
+void clip(ParticleScene& scene, const ClipPlane& plane)
+{
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (const ColouredSphere& s : scene.spheres) {
+        lowest = std::min(lowest, coordinate(s.sphere.centre, plane.axis));
+        highest = std::max(highest, coordinate(s.sphere.centre, plane.axis));
+    }
+    const std::size_t all = scene.spheres.size();
+    std::erase_if(scene.spheres,
+                  [&](const ColouredSphere& s) { return plane.hides(s.sphere.centre); });
+    std::erase_if(scene.rods, [&](const ColouredRod& rod) {
+        return plane.hides(rod.from) || plane.hides(rod.to);
+    });
+    if (scene.spheres.empty() && all > 0)
+        throw Error(ErrorKind::input, "clip",
+                    std::string("hides all particles, their centres have ") + "xyz"[plane.axis] +
+                        " from " + std::to_string(lowest) + " to " + std::to_string(highest));
 }
 
 /// Everything that has to be in the picture.
@@ -134,13 +162,19 @@ Image picture_of(ParticleScene scene, const ColourScale& scale, const ParticleVi
     scene.ambient_occlusion = view.ambient_occlusion;
     scene.antialiasing = view.antialiasing;
     const Rectangle& room = layout.particles;
+    // before anything is hidden: the camera stands where it stands without the plane
     scene.camera = frame_spheres(view.seen.empty() ? contents(scene) : view.seen,
-                                 static_cast<int>(room.width()), static_cast<int>(room.height()));
+                                 static_cast<int>(room.width()), static_cast<int>(room.height()),
+                                 view.direction, view.zoom);
+    if (view.clip) clip(scene, *view.clip);
+    for (const ColouredRod& rod : scene.rods)  // round ends
+        for (const Position& end : {rod.from, rod.to})
+            scene.spheres.push_back({{end, rod.radius}, rod.colour});
 
     const Fonts fonts;
     Drawing drawing{view.width, view.height, {}};
     if (view.colour_bar) draw_colour_bar(drawing, fonts, scale, layout);
-    if (view.triad) draw_triad(drawing, fonts, layout);
+    if (view.triad) draw_triad(drawing, fonts, layout, scene.camera.axes);
     if (!view.title.empty()) draw_title(drawing, fonts, view.title, layout);
 
     Image image(view.width, view.height);
@@ -215,9 +249,6 @@ Image render_chains(vtkPolyData* particles, vtkPolyData* contacts, const Particl
         s.colour = grey;
     }
     scene.rods = strong_rods(contacts, values, scale, smallest);
-    for (const ColouredRod& rod : scene.rods)  // round ends
-        for (const Position& end : {rod.from, rod.to})
-            scene.spheres.push_back({{end, rod.radius}, rod.colour});
     return picture_of(std::move(scene), scale, view, window);
 }
 

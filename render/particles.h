@@ -4,8 +4,10 @@
 // array), so picture and file cannot disagree. Vectors are coloured by their length; integer arrays
 // get a bar of whole numbers. Colours run from 0 (from a round 1 % quantile where values are
 // negative) to a round 99 % quantile; values beyond are marked on the bar.
+// The viewer may stand anywhere around the box, and a plane can hide the particles (and contacts of
+// particles) with centres beyond it; that changes no colour.
 // Errors: rendering (no driver, no font), input (no such array, unknown colour map, empty colour
-// range, positions not finite, radius <= 0).
+// range, positions not finite, radius <= 0, nothing left by the plane, zoom outside [0.1, 100]).
 #pragma once
 #include "render/framing.h"
 #include "render/image.h"
@@ -20,6 +22,18 @@ class vtkPolyData;
 
 namespace sigmaflow::render {
 
+/// Hides what has its centre above (or below) a value of x, y or z.
+struct ClipPlane {
+    int axis = 2;      // 0, 1, 2: x, y, z
+    double value = 0;  // [a]
+    bool hides_above = true;
+
+    bool hides(const Position& centre) const
+    {
+        return hides_above ? centre[axis] > value : centre[axis] < value;
+    }
+};
+
 struct ParticleView {
     int width = 1920, height = 1080;     // [64, 16384]
     std::array<double, 3> box_length{};  // outline [0, L]
@@ -31,6 +45,9 @@ struct ParticleView {
     bool ambient_occlusion = true;
     bool antialiasing = true;
     bool triad = true, colour_bar = true, outline = true;
+    ViewDirection direction;
+    double zoom = 1;
+    std::optional<ClipPlane> clip;
     std::vector<Sphere> seen;  // what the camera shows; default: what is in the picture
 };
 

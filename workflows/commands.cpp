@@ -10,11 +10,12 @@ namespace sigmaflow::workflows {
 
 std::span<const Command> commands()
 {
-    static const std::array list{
-        init_command(),     run_command(),     plan_command(),       status_command(),
-        sweep_command(),    collect_command(), report_command(),     compare_command(),
-        validate_command(), verify_command(),  evaluate_command(),   explain_command(),
-        schema_command(),   doctor_command(),  completion_command(), man_command()};
+    static const std::array list{init_command(),       run_command(),    plan_command(),
+                                 status_command(),     sweep_command(),  collect_command(),
+                                 render_command(),     report_command(), compare_command(),
+                                 validate_command(),   verify_command(), evaluate_command(),
+                                 explain_command(),    schema_command(), doctor_command(),
+                                 completion_command(), man_command()};
     return list;
 }
 
@@ -26,6 +27,7 @@ constexpr const char* program_help = R"(examples:
   sigmaflow explain shear                             the parameters of one step
   sigmaflow validate my_flow.json                     what is wrong with a workflow
   sigmaflow report out/quickstart                     one HTML page of a run: report.html
+  sigmaflow render out/quickstart --view front        a new picture of its last frame
   sigmaflow run --help                                options and examples of a command
 
 a run that was interrupted or killed goes on with the same command

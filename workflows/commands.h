@@ -50,6 +50,7 @@ Command doctor_command();
 Command plan_command();
 Command status_command();
 Command verify_command();
+Command render_command();
 
 inline constexpr std::string_view program_summary =
     "sigmaflow: dense frictional suspensions sheared at an imposed stress";

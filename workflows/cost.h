@@ -20,9 +20,9 @@
 //
 // "equilibrate" ends when the flow is stationary: taken for 1.5 of its minimum strain; steps that
 // choose their runs themselves (adaptive_flow_curve, jamming) are rough.
-// Predicted over taken: 0.72 to 1.34 for 12 of 13 runs (n = 100 to 4500, three schemes, rate control,
-// no friction, quickstart.json) on a busy machine, one 2.24 while its speed changed: the table in
-// tests/benchmarks/README.md, made by plan_table.py.
+// Predicted over taken: 0.72 to 1.34 for 12 of 13 runs (n = 100 to 4500, three schemes, rate
+// control, no friction, quickstart.json) on a busy machine, one 2.24 while its speed changed: the
+// table in tests/benchmarks/README.md, made by plan_table.py.
 #pragma once
 #include "workflows/workflow.h"
 

@@ -1,6 +1,7 @@
 #include "workflows/run_files.h"
 
 #include "io/case_file.h"
+#include "io/paraview_view.h"
 
 #include <vtkPolyData.h>
 #include <cstdio>
@@ -79,6 +80,7 @@ void RunFiles::note(const Frame& frame)
         context_.folder.file(folder_ + list->back().file);
         context_.folder.file(folder_ + name + ".pvd");
     }
+    context_.folder.file(folder_ + io::view_script_name);
 }
 
 void RunFiles::append(const Sample& sample, bool on_grid)
@@ -97,6 +99,8 @@ void RunFiles::append(const Frame& frame)
                   io::particles_polydata(frame));
     io::write_vtp(context_.folder.file(folder_ + contacts_.back().file),
                   io::contacts_polydata(frame));
+    if (particles_.size() == 1)
+        io::write_file(context_.folder.file(folder_ + io::view_script_name), io::view_script());
     // rewritten with every frame, so that ParaView can follow a run and survives its end
     io::write_pvd(context_.folder.file(folder_ + "particles.pvd"), particles_);
     io::write_pvd(context_.folder.file(folder_ + "contacts.pvd"), contacts_);

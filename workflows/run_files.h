@@ -4,6 +4,7 @@
 //   run.journal                  samples and frames while the step runs (io/run_journal.h)
 //   run.h5                       both, made of the journal at the end
 //   particles.pvd, contacts.pvd  collections for ParaView of vtk/particles_00000.vtp, ...
+//   view.py                      shows the particles in ParaView (io/paraview_view.h)
 //   state.json                   the last state, for `sigmaflow evaluate`
 // A step that goes on from a checkpoint finds its files as they were then: rows and frames that
 // came later are made again.

@@ -189,7 +189,7 @@ void RunFolder::remove(const std::string& relative) const
 void RunFolder::remove_leftovers(const std::string& step) const
 {
     for (const std::string name : {series_name, run_name, journal_name, state_name, failure_name,
-                                   "particles.pvd", "contacts.pvd"})
+                                   "particles.pvd", "contacts.pvd", "view.py"})
         for (const char* ending : {"", ".tmp", ".part"}) remove(step + "/" + name + ending);
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(path_ / step / "vtk", error))

@@ -13,6 +13,8 @@ except ImportError as error:
     print("skipped:", error)
     sys.exit(77)
 
+import h5md  # noqa: E402, beside this file
+
 PARTICLES, FRAMES, SAMPLES = 6, 4, 300
 folder = sys.argv[1]
 run = h5py.File(os.path.join(folder, "run.h5"), "r")
@@ -42,7 +44,10 @@ def check_element(element, name, samples, unit):
     check(text(element["value"].attrs["unit"]) == unit, f"{name} has the unit {element['value'].attrs['unit']}")
 
 
-# H5MD 1.1
+# H5MD 1.1: the whole convention, and what of it is ours
+problems = h5md.problems(run)
+check(not problems, "\n".join(problems))
+h5md.check_the_checker(os.path.join(folder, "run.h5"), os.path.join(folder, "broken.h5"))
 check_equal(run["h5md"].attrs["version"], [1, 1], "H5MD version")
 check(text(run["h5md/creator"].attrs["name"]) == "sigmaflow", "creator")
 check("name" in run["h5md/author"].attrs and "version" in run["h5md/creator"].attrs, "h5md texts")

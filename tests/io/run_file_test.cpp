@@ -302,6 +302,13 @@ TEST(ReadRun, RefusesForeignFiles)
     expect_error(ErrorKind::input, {"other.h5", "sigmaflow_schema"}, [&] { read_run(path); });
 }
 
+void set_schema(hid_t file, int schema)
+{
+    const hid_t attribute = H5Aopen(file, "sigmaflow_schema", H5P_DEFAULT);
+    H5Awrite(attribute, H5T_NATIVE_INT, &schema);
+    H5Aclose(attribute);
+}
+
 class DamagedRun : public testing::Test {
 protected:
     void SetUp() override
@@ -429,13 +436,14 @@ TEST_F(DamagedRun, IsRefusedWhenAParameterIsUnknownOrMissing)
 
 TEST_F(DamagedRun, IsRefusedWhenItComesFromALaterVersion)
 {
-    change([](hid_t file) {
-        const hid_t attribute = H5Aopen(file, "sigmaflow_schema", H5P_DEFAULT);
-        const int later = 2;
-        H5Awrite(attribute, H5T_NATIVE_INT, &later);
-        H5Aclose(attribute);
-    });
-    expect_refused({"must have the schema 1", "got 2"});
+    change([](hid_t file) { set_schema(file, 3); });
+    expect_refused({"must have the schema 1 or 2", "got 3"});
+}
+
+TEST_F(DamagedRun, IsReadWhenItComesFromTheFirstVersion)
+{
+    change([](hid_t file) { set_schema(file, 1); });
+    EXPECT_NO_THROW(read_run(path_));
 }
 
 }

@@ -65,12 +65,11 @@ void write_example(const std::filesystem::path& folder)
     io::RunWriter run(folder / "run.h5", example_frame(0).state, {}, ImposedStress{2},
                       {{"version", "example"}, {"seed", "42"}});
     io::SeriesWriter series(folder / "series.csv");
+    std::vector<io::SeriesEntry> particle_files, contact_files;
     for (int step = 0; step < 300; ++step) {
         run.append(example_sample(step));
         series.append(example_sample(step));
-    }
-    std::vector<io::SeriesEntry> particle_files, contact_files;
-    for (int step = 0; step < frames; ++step) {
+        if (step >= frames) continue;
         const Frame frame = example_frame(step);
         const std::string number = std::to_string(step) + ".vtp";
         run.append(frame);

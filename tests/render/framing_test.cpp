@@ -79,6 +79,56 @@ TEST(Framing, TheViewDoesNotDependOnWhereTheBoxLies)
     EXPECT_NEAR(a.y, b.y, 1e-6);
 }
 
+TEST(Framing, NamedDirectionsShowTheirPlanes)
+{
+    // right and up of the picture: which axis, which sign
+    struct Case {
+        ViewDirection direction;
+        Position right, up;
+    };
+    for (const auto& [direction, right, up] :
+         {Case{{0, 0}, {1, 0, 0}, {0, 1, 0}}, Case{{90, 0}, {0, 0, -1}, {0, 1, 0}},
+          Case{{0, 90}, {1, 0, 0}, {0, 0, -1}}, Case{{180, 0}, {-1, 0, 0}, {0, 1, 0}},
+          Case{{0, -90}, {1, 0, 0}, {0, 0, 1}}}) {
+        const ViewAxes axes = view_axes(direction);
+        for (std::size_t d = 0; d < 3; ++d) {
+            EXPECT_NEAR(axes.right[d], right[d], 1e-15) << direction.azimuth;
+            EXPECT_NEAR(axes.up[d], up[d], 1e-15) << direction.elevation;
+        }
+    }
+    const ViewAxes iso = view_axes({45, std::atan(std::sqrt(0.5)) * 180 / M_PI});
+    for (std::size_t d = 0; d < 3; ++d)  // along the diagonal of a cube
+        EXPECT_NEAR(iso.away[d], -1 / std::sqrt(3.), 1e-15);
+}
+
+TEST(Framing, EverythingIsSeenFromEveryDirection)
+{
+    const std::vector<Sphere> spheres = corner_spheres(10, 14, 8, 1.2);
+    for (double azimuth = -180; azimuth < 180; azimuth += 33)
+        for (double elevation : {-90., -50., 0., 35., 90.}) {
+            const Camera camera = frame_spheres(spheres, 300, 200, {azimuth, elevation});
+            for (const Position& p : surface_points(spheres)) {
+                const Point at = camera.project(p);
+                ASSERT_TRUE(at.x >= 0 && at.y >= 0 && at.x <= camera.width && at.y <= camera.height)
+                    << azimuth << " " << elevation;
+            }
+        }
+}
+
+TEST(Framing, ZoomEnlargesAboutTheMiddle)
+{
+    const std::vector<Sphere> spheres = corner_spheres(10, 10, 10, 1);
+    const Camera plain = frame_spheres(spheres, 500, 500);
+    for (double zoom : {0.5, 2.0, 7.0}) {
+        const Camera near = frame_spheres(spheres, 500, 500, {}, zoom);
+        EXPECT_LE(near.width, 500);
+        EXPECT_LE(near.height, 500);
+        const Point a = plain.project({5.5, 4, 6}), b = near.project({5.5, 4, 6});
+        EXPECT_NEAR(b.x - 0.5 * near.width, zoom * (a.x - 0.5 * plain.width), 1e-9);
+        EXPECT_NEAR(b.y - 0.5 * near.height, zoom * (a.y - 0.5 * plain.height), 1e-9);
+    }
+}
+
 TEST(Framing, ViewAxesAreARightHandedOrthonormalSet)
 {
     const ViewAxes axes = view_axes();

@@ -4,6 +4,7 @@
 #include "tests/render/scenes.h"
 
 #include <gtest/gtest.h>
+#include <filesystem>
 
 using namespace sigmaflow;
 using render::Image;
@@ -46,9 +47,13 @@ TEST(ImageCompare, ForgivesTheLastBitOfColours)
 
 TEST(ImageCompare, AMissingBaselineIsAFailureThatNamesBothFiles)
 {
-    const auto result = test::matches_baseline(Image(16, 16), "no_such_baseline", 0.5);
+    const auto folder = std::filesystem::path(testing::TempDir()) / "sigmaflow_no_baseline";
+    const test::PictureFolders folders{test::usual_folders().baselines, folder};
+    const auto result = test::matches_baseline(Image(16, 16), "no_such_baseline", 0.5, folders);
     EXPECT_FALSE(result);
-    EXPECT_NE(std::string(result.message()).find("images/no_such_baseline.png"), std::string::npos);
-    EXPECT_NE(std::string(result.message()).find("image_candidates/no_such_baseline.png"),
-              std::string::npos);
+    const std::string message = result.message();
+    EXPECT_NE(message.find("images/no_such_baseline.png"), std::string::npos) << message;
+    EXPECT_NE(message.find((folder / "no_such_baseline.png").string()), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(folder / "no_such_baseline.png"));
+    std::filesystem::remove_all(folder);
 }

@@ -88,6 +88,34 @@ TEST(Overlay, TriadAndBarKeepOffTheParticles)
     }
 }
 
+TEST(Overlay, TriadsOfAllViewsLieInThePictureAndOffTheParticles)
+{
+    const Fonts fonts;
+    const ViewDirection views[] = {{0, 0},    {0, 90},  {0, -90},   {90, 0},
+                                   {-90, 0},  {180, 0}, {45, 35.3}, {135, -35},
+                                   {-60, 20}, {22, 15}, {200, -40}, {250, 60}};
+    for (const auto& [width, height] : sizes)
+        for (const ViewDirection& view : views) {
+            SCOPED_TRACE(testing::Message() << width << " x " << height << ", azimuth "
+                                            << view.azimuth << ", elevation " << view.elevation);
+            const ParticleLayout layout = particle_layout(width, height, true, true, true);
+            Drawing drawing{width, height, {}};
+            draw_triad(drawing, fonts, layout, view_axes(view));
+            int texts = 0;
+            for (const Shape& shape : drawing.shapes) {
+                const Rectangle r = bounds(shape);
+                EXPECT_GE(r.left, 0);
+                EXPECT_LE(r.bottom, height);
+                EXPECT_FALSE(overlap(r, layout.particles));
+                if (!is_text(shape)) continue;
+                ++texts;
+                for (const Shape& other : drawing.shapes)
+                    EXPECT_FALSE(&other != &shape && is_text(other) && overlap(r, bounds(other)));
+            }
+            EXPECT_EQ(texts, 3);
+        }
+}
+
 TEST(Overlay, TheSmallestPicturesStillHaveRoomForParticles)
 {
     for (const auto& [width, height] : {std::pair(64, 64), {100, 100}, {64, 16384}, {16384, 64}}) {

@@ -252,6 +252,79 @@ TEST(Particles, AmbientOcclusionDarkensGapsButNotFreeSpheres)
     EXPECT_LT(darkening(in_a_hole), 0.9);
 }
 
+TEST(Particles, APlaneHidesTheCentresBeyondItAndChangesNoColour)
+{
+    std::vector<Ball> balls;
+    for (int i = 0; i < 4; ++i) balls.push_back({{3.0 * i, 0, 0}, 1.0, 0.1 + 0.25 * i});
+    ParticleView view = test::bare_view(400, 120);
+    view.direction = {0, 0};
+    const auto shown = [&](const std::optional<render::ClipPlane>& clip) {
+        view.clip = clip;
+        return render::render_particles(test::polydata(balls), view);
+    };
+    const Image all = shown(std::nullopt);
+    EXPECT_EQ(blob_areas(all).size(), 4u);
+    const Image left = shown(render::ClipPlane{0, 6, true});  // a centre in the plane stays
+    const Image right = shown(render::ClipPlane{0, 6, false});
+    EXPECT_EQ(blob_areas(left).size(), 3u);
+    EXPECT_EQ(blob_areas(right).size(), 2u);
+    int from_left = 0, from_right = 0;
+    for (int x = 0; x < 400; ++x) {  // through the middles: what is left stays as it was
+        const std::uint8_t* p = all.pixel(x, 60);
+        if (!is_white(left.pixel(x, 60))) from_left += std::equal(p, p + 3, left.pixel(x, 60));
+        if (!is_white(right.pixel(x, 60))) from_right += std::equal(p, p + 3, right.pixel(x, 60));
+    }
+    EXPECT_GT(from_left, 3 * 60);
+    EXPECT_GT(from_right, 2 * 60);
+}
+
+TEST(Particles, ThePlaneThatHidesAllIsRefused)
+{
+    ParticleView view = test::bare_view(100, 100);
+    view.clip = render::ClipPlane{1, -3, true};
+    try {
+        render::render_particles(test::polydata({{{0, 2, 0}, 1.0, 0.5}}), view);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find("y from 2"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Particles, TheNearerOneIsTheFartherOneFromBehind)
+{
+    const std::vector<Ball> balls{{{0, 0, 3}, 1.0, 0.9}, {{0, 0, 0}, 1.0, 0.2}};
+    ParticleView view = test::bare_view(120, 120);
+    const auto middle = [&](double azimuth) {
+        view.direction = {azimuth, 0};
+        const Image image = render::render_particles(test::polydata(balls), view);
+        return std::vector<std::uint8_t>(image.pixel(60, 60), image.pixel(60, 60) + 3);
+    };
+    EXPECT_LT(tint_difference(middle(0).data(), render::map_colour("inferno", 0.9)), 5);
+    EXPECT_LT(tint_difference(middle(180).data(), render::map_colour("inferno", 0.2)), 5);
+}
+
+TEST(Particles, InSteadyPicturesTheBoxStaysWhereItIs)
+{
+    std::vector<Ball> balls = test::shaken_lattice({3, 3, 3});
+    balls[0].centre = {0.1, 3.9, 3.9};
+    ParticleView view = test::bare_view(200, 160);
+    view.outline = true;
+    view.box_length = {7.8, 7.8, 7.8};
+    // the box alone: one particle in the middle of a side is left, which hides no corner
+    view.clip = render::ClipPlane{0, 0.2, true};
+    const auto box = [&](bool steady, const std::array<double, 3>& other) {
+        view.steady = steady;
+        balls.back().centre = other;
+        const render::Rectangle r =
+            ink_bounds(render::render_particles(test::polydata(balls), view));
+        return std::array{r.left, r.top, r.right, r.bottom};
+    };
+    const std::array<double, 3> inside{4, 4, 4}, at_the_corner{7.8, 7.8, 0};
+    EXPECT_NE(box(false, inside), box(false, at_the_corner));
+    EXPECT_EQ(box(true, inside), box(true, at_the_corner));
+}
+
 TEST(Particles, LookLikeTheBaseline)
 {
     ParticleView view;

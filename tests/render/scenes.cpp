@@ -1,6 +1,8 @@
 // tests/render/scenes.cpp
 #include "tests/render/scenes.h"
 
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
@@ -33,6 +35,25 @@ vtkSmartPointer<vtkPolyData> polydata(const std::vector<Ball>& balls)
     data->GetPointData()->AddArray(speed);
     data->GetPointData()->AddArray(velocity);
     data->GetPointData()->AddArray(contacts);
+    return data;
+}
+
+vtkSmartPointer<vtkPolyData> contacts(const std::vector<Rod>& rods)
+{
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> lines;
+    vtkNew<vtkDoubleArray> forces;
+    forces->SetName("normal_force");
+    for (const Rod& rod : rods) {
+        const vtkIdType ends[2] = {points->InsertNextPoint(rod.from.data()),
+                                   points->InsertNextPoint(rod.to.data())};
+        lines->InsertNextCell(2, ends);
+        forces->InsertNextValue(rod.force);
+    }
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->SetLines(lines);
+    data->GetCellData()->AddArray(forces);
     return data;
 }
 

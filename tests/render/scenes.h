@@ -20,6 +20,14 @@ struct Ball {
 /// `contact_number` = value rounded down. Without vertex cells, which a picture must not need.
 vtkSmartPointer<vtkPolyData> polydata(const std::vector<Ball>& balls);
 
+struct Rod {
+    std::array<double, 3> from, to;
+    double force;
+};
+
+/// Lines with the cell array `normal_force`.
+vtkSmartPointer<vtkPolyData> contacts(const std::vector<Rod>& rods);
+
 /// A cubic lattice, shaken by a fixed rule, radii 1 and 1.4, values from 0 to about 1; it fills a
 /// box with the edge lengths 2.6 * cells.
 std::vector<Ball> shaken_lattice(std::array<int, 3> cells);

@@ -2,93 +2,66 @@
 #include "tests/support/image_compare.h"
 
 #include "engine/error.h"
+#include "tests/support/difference_page.h"
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <cstdio>
 
 namespace sigmaflow::test {
 namespace {
 
-constexpr int window = 8, stride = 4;
+/// Of all pixels; a plot without curves still has its axes, an empty picture nothing.
+constexpr double least_drawn = 0.01;
 
-double window_similarity(const render::Image& a, const render::Image& b, int left, int top,
-                         int channel)
+std::string number(double value)
 {
-    constexpr double count = window * window;
-    constexpr double c1 = (0.01 * 255) * (0.01 * 255), c2 = (0.03 * 255) * (0.03 * 255);
-    double sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0, sum_ab = 0;
-    for (int y = top; y < top + window; ++y) {
-        for (int x = left; x < left + window; ++x) {
-            const double p = a.pixel(x, y)[channel], q = b.pixel(x, y)[channel];
-            sum_a += p;
-            sum_b += q;
-            sum_aa += p * p;
-            sum_bb += q * q;
-            sum_ab += p * q;
-        }
-    }
-    const double mean_a = sum_a / count, mean_b = sum_b / count;
-    const double variance_a = sum_aa / count - mean_a * mean_a;
-    const double variance_b = sum_bb / count - mean_b * mean_b;
-    const double covariance = sum_ab / count - mean_a * mean_b;
-    return (2 * mean_a * mean_b + c1) * (2 * covariance + c2) /
-           ((mean_a * mean_a + mean_b * mean_b + c1) * (variance_a + variance_b + c2));
-}
-
-std::string keep_candidate(const render::Image& image, const std::string& name)
-{
-    const auto folder = std::filesystem::current_path() / "image_candidates";
-    std::filesystem::create_directories(folder);
-    const auto path = folder / (name + ".png");
-    std::ofstream(path, std::ios::binary) << render::png_bytes(image);
-    return path.string();
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4f", value);
+    return text;
 }
 
 }
 
-double similarity(const render::Image& a, const render::Image& b)
+PictureFolders usual_folders()
 {
-    double sum = 0;
-    long windows = 0;
-    for (int channel = 0; channel < 3; ++channel) {
-        for (int y = 0; y + window <= a.height; y += stride) {
-            for (int x = 0; x + window <= a.width; x += stride) {
-                sum += window_similarity(a, b, x, y, channel);
-                ++windows;
-            }
-        }
-    }
-    return sum / windows;
-}
-
-int largest_difference(const render::Image& a, const render::Image& b)
-{
-    int largest = 0;
-    for (std::size_t i = 0; i < a.rgb.size(); ++i)
-        largest = std::max(largest, std::abs(int(a.rgb[i]) - int(b.rgb[i])));
-    return largest;
+    return {SIGMAFLOW_TEST_IMAGES, SIGMAFLOW_IMAGE_CANDIDATES};
 }
 
 testing::AssertionResult matches_baseline(const render::Image& image, const std::string& name,
-                                          double least_similarity)
+                                          double least_similarity, const PictureFolders& folders)
 {
-    const auto path = std::filesystem::path(SIGMAFLOW_TEST_IMAGES) / (name + ".png");
-    render::Image baseline;
+    const auto path = folders.baselines / (name + ".png");
+    Difference found{.name = name,
+                     .accepted = path,
+                     .drawn = image,
+                     .baseline = {},
+                     .score = 0,
+                     .least = least_similarity,
+                     .reason = ""};
     try {
-        baseline = render::read_png(path);
+        found.baseline = render::read_png(path);
     } catch (const Error& error) {
-        return testing::AssertionFailure()
-               << "no baseline: " << error.what() << "; if the picture "
-               << keep_candidate(image, name) << " is right, copy it to " << path;
+        found.reason = std::string("no baseline: ") + error.what();
     }
-    const bool same_size = baseline.width == image.width && baseline.height == image.height;
-    const double found = same_size ? similarity(image, baseline) : -1;
-    if (found >= least_similarity) return testing::AssertionSuccess();
+    if (found.baseline) {
+        const bool same_size =
+            found.baseline->width == image.width && found.baseline->height == image.height;
+        if (same_size) found.score = similarity(image, *found.baseline);
+        if (!same_size)
+            found.reason = "another size than the baseline";
+        else if (found.score < least_similarity)
+            found.reason = "similarity " + number(found.score) + ", at least " +
+                           number(least_similarity) + " is asked for";
+    }
+    if (const double drawn = drawn_share(image); drawn < least_drawn)
+        found.reason = "blank: only " + number(drawn) + " of the pixels differ from the background";
+    if (found.reason.empty()) {
+        remove_difference(folders.candidates, name);
+        return testing::AssertionSuccess();
+    }
+    const auto drawn = add_difference(folders.candidates, found);
     return testing::AssertionFailure()
-           << "the picture " << keep_candidate(image, name) << " differs from the baseline " << path
-           << ": similarity " << found << ", at least " << least_similarity << " is asked for";
+           << name << ": " << found.reason << "; see " << folders.candidates / page_name
+           << "; if the picture is right: cp " << drawn << " " << path;
 }
 
 }

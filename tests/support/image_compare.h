@@ -1,23 +1,26 @@
-// tests/support/image_compare.h -- are two pictures the same, to the eye and to the byte?
+// tests/support/image_compare.h -- pictures against those that people have looked at.
 #pragma once
 #include "render/image.h"
+#include "tests/support/similarity.h"
 
 #include <gtest/gtest.h>
+#include <filesystem>
 #include <string>
 
 namespace sigmaflow::test {
 
-/// Mean structural similarity in [-1, 1] of two pictures of equal size, 1 for identical ones
-/// (Wang, Bovik, Sheikh, Simoncelli, IEEE Trans. Image Process. 13, 600, 2004): windows of 8 x 8
-/// pixels every 4 pixels, the three colours averaged, constants 0.01 and 0.03 as in the source.
-double similarity(const render::Image& a, const render::Image& b);
+/// Where baselines lie, and where pictures that differ are left with their page.
+struct PictureFolders {
+    std::filesystem::path baselines, candidates;
+};
+/// tests/images, and image_candidates in the build folder.
+PictureFolders usual_folders();
 
-/// Largest difference of a colour channel, 0..255. Pictures of equal size.
-int largest_difference(const render::Image& a, const render::Image& b);
-
-/// Compares with tests/images/<name>.png. If that is missing or not similar enough, the picture is
-/// left in image_candidates/<name>.png of the working folder and the message names both.
+/// Compares with <baselines>/<name>.png. Fails if that is missing or not similar enough, or if the
+/// picture is blank, whatever the baseline; then the picture is left in the folder of candidates,
+/// the page there shows it (difference_page.h), and the message names all three.
 testing::AssertionResult matches_baseline(const render::Image& image, const std::string& name,
-                                          double least_similarity);
+                                          double least_similarity,
+                                          const PictureFolders& folders = usual_folders());
 
 }

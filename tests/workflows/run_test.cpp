@@ -49,6 +49,7 @@ TEST_F(SmallRun, LeavesEveryPromisedFile)
                              "shear/run.h5",
                              "shear/state.json",
                              "shear/particles.pvd",
+                             "shear/view.py",
                              "shear/contacts.pvd",
                              "shear/vtk/particles_00000.vtp",
                              "shear/vtk/particles_00001.vtp",

@@ -1,11 +1,9 @@
 // Step "movie": the stored frames of a run as a film and as numbered pictures.
 #include "render/movie.h"
 #include "io/atomic_file.h"
-#include "io/particles_vtp.h"
 #include "render/offscreen.h"
-#include "render/particle_series.h"
 #include "workflows/checkpoint.h"
-#include "workflows/particle_colours.h"
+#include "workflows/particle_picture.h"
 #include "workflows/steps.h"
 
 #include <vtkPolyData.h>
@@ -41,8 +39,9 @@ struct Movie {
     std::string of;
     std::optional<double> from_strain, to_strain;
     int most_frames = 200, frames_per_second = 12;
-    ParticleColours colours;
-    PictureSize size{960, 540};
+    ParticlePicture picture;
+
+    Movie() { picture.size = {960, 540}; }
 
     void describe(io::Fields& f)
     {
@@ -54,8 +53,7 @@ struct Movie {
         f("most_frames", most_frames, io::Integers{2, 10'000}, "-",
           "if more are stored, this number of them, evenly spread");
         f("frames_per_second", frames_per_second, io::Integers{1, 60}, "1/s", "of the film");
-        colours.describe(f);
-        size.describe(f);
+        picture.describe(f);
     }
 
     void validate(const io::JsonNode& node, Plan& plan)
@@ -66,7 +64,8 @@ struct Movie {
         if (from_strain && to_strain && *to_strain < *from_strain)
             throw node.member("to_strain")
                 .wrong("must be >= from_strain, " + io::number_text(*from_strain));
-        plan.needs.drawn_pixels = size.pixels();
+        picture.validate(node);
+        plan.needs.drawn_pixels = picture.size.pixels();
         // the film takes less than the pictures that it is made of
         plan.needs.drawn_pictures = 2 * std::min<double>(most_frames, run.frames);
     }
@@ -96,40 +95,36 @@ struct Movie {
         context.results["to_strain"] = frames.back().state.strain;
         context.results["seconds"] = static_cast<double>(frames.size()) / frames_per_second;
         if (frames.size() == 1) context.results["outcome"] = "one frame only";
+        const auto plane = clip_plane(picture.clip);
+        if (plane && std::any_of(frames.begin(), frames.end(),
+                                 [&](const Frame& f) { return hides_all(*plane, f); })) {
+            context.results["outcome"] = "no film, the clip plane hides all particles of a frame";
+            return;
+        }
         draw_or_note(context, [&] { draw(context, run, frames); });
     }
 
     void draw(Context& context, const Run& run, const std::vector<Frame>& frames) const
     {
-        const render::ParticleView fixed = view_of_all(run, frames);
-        context.results["colour_maximum"] = *fixed.colour_maximum;
+        render::ParticleView view = picture.common_view(frames);
+        context.results["colour_maximum"] = *view.colour_maximum;
         const std::string& name = context.step_name;
         render::MovieWriter film(context.folder.path() / (name + ".ogv.tmp"), frames_per_second);
         render::KeptWindow window;
-        std::string picture;
+        std::string bytes;
         for (std::size_t k = 0; k < frames.size(); ++k) {
             context.keeper.stop_if_asked();
             context.progress.update(static_cast<double>(k) / static_cast<double>(frames.size()),
                                     "frame " + std::to_string(k + 1));
-            render::ParticleView view = fixed;
-            view.title = colours.view(run, frames[k], size).title;
-            const render::Image image = colours.draw(frames[k], view, &window);
+            const std::string title = frame_title(frames[k], run.volume_fraction, run.control);
+            view.title = picture.particle_view(frames[k], title).title;
+            const render::Image image = picture.draw(frames[k], view, &window);
             film.add(image);
-            picture = render::png_bytes(image);
-            io::write_file(context.folder.file(picture_name(name, k)), picture);
+            bytes = render::png_bytes(image);
+            io::write_file(context.folder.file(picture_name(name, k)), bytes);
         }
         io::write_file(context.folder.file(name + ".ogv"), film.finish());
-        io::write_file(context.folder.file(name + ".png"), picture);
-    }
-
-    render::ParticleView view_of_all(const Run& run, const std::vector<Frame>& frames) const
-    {
-        render::ParticleSeries series(colours.view(run, frames.front(), size));
-        for (const Frame& frame : frames) {
-            const auto contacts = colours.shows_chains() ? io::contacts_polydata(frame) : nullptr;
-            series.add(io::particles_polydata(frame), contacts);
-        }
-        return series.view();
+        io::write_file(context.folder.file(name + ".png"), bytes);
     }
 
     static void remove_older_pictures(const Context& context)
