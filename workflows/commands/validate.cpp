@@ -65,7 +65,7 @@ void validate_as_json(const std::vector<std::string>& files,
         }
         print_json(event);
     }
-    if (last) throw Verdict(last->kind(), last->where(), last->problem());
+    if (last) throw Verdict(last->kind(), last->where(), "not valid");
 }
 
 struct ValidateArguments {
