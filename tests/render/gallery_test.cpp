@@ -219,7 +219,6 @@ std::vector<Kind> kinds()
                          v.direction = {-130, -30};
                          v.zoom = 2.5;
                      }),
-        of_particles("particles_steady", [](ParticleView& v) { v.steady = true; }),
         {"chains", chains, drawn_by_a_driver},
         {"profile", profile, drawn_by_us},
         {"histogram", histogram, drawn_by_us},

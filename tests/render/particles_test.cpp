@@ -304,27 +304,6 @@ TEST(Particles, TheNearerOneIsTheFartherOneFromBehind)
     EXPECT_LT(tint_difference(middle(180).data(), render::map_colour("inferno", 0.2)), 5);
 }
 
-TEST(Particles, InSteadyPicturesTheBoxStaysWhereItIs)
-{
-    std::vector<Ball> balls = test::shaken_lattice({3, 3, 3});
-    balls[0].centre = {0.1, 3.9, 3.9};
-    ParticleView view = test::bare_view(200, 160);
-    view.outline = true;
-    view.box_length = {7.8, 7.8, 7.8};
-    // the box alone: one particle in the middle of a side is left, which hides no corner
-    view.clip = render::ClipPlane{0, 0.2, true};
-    const auto box = [&](bool steady, const std::array<double, 3>& other) {
-        view.steady = steady;
-        balls.back().centre = other;
-        const render::Rectangle r =
-            ink_bounds(render::render_particles(test::polydata(balls), view));
-        return std::array{r.left, r.top, r.right, r.bottom};
-    };
-    const std::array<double, 3> inside{4, 4, 4}, at_the_corner{7.8, 7.8, 0};
-    EXPECT_NE(box(false, inside), box(false, at_the_corner));
-    EXPECT_EQ(box(true, inside), box(true, at_the_corner));
-}
-
 TEST(Particles, LookLikeTheBaseline)
 {
     ParticleView view;

@@ -87,7 +87,7 @@ void draw(const fs::path& folder)
     io::write_file(folder / "ours.png", render::png_bytes(cut));
 
     Json expected = {{"particles", frame.state.size()},
-                     {"colour_maximum", picture.colours(frame).to},
+                     {"colour_maximum", *picture.common_view({frame}).colour_maximum},
                      {"camera",
                       {{"position", camera.position()},
                        {"focus", camera.focus},
@@ -168,7 +168,7 @@ int compare(const fs::path& folder)
     std::cout << "similarity " << found << " (at least " << least_similarity << "), outlines "
               << shared << " (at least " << least_overlap << ")\n";
     int wrong = found < least_similarity || shared < least_overlap, checked = 0;
-    const double largest = workflows::ParticlePicture{}.colours(frame).to;
+    const double largest = *workflows::ParticlePicture{}.common_view({frame}).colour_maximum;
     double worst = 0;
     for (const auto& [i, at] : unhidden(frame, camera_of(frame))) {
         const render::Colour colour =
