@@ -44,7 +44,8 @@ TEST_F(Completion, OffersCommandsOptionsAndSteps)
     EXPECT_EQ(offered({"run", "--th"}), Offers{"--threads"});
     EXPECT_EQ(offered({"compare", "--to"}), Offers{"--tolerance"});
     EXPECT_TRUE(offered({"status", "--to"}).empty());
-    EXPECT_EQ(offered({"steps", "velo"}), Offers{"velocity_profile"});
+    EXPECT_EQ(offered({"explain", "velocity_profile.bi"}), Offers{"velocity_profile.bins"});
+    EXPECT_TRUE(offered({"explain", "velo"}).contains("velocity_profile"));
     EXPECT_EQ(offered({"completion", ""}), (Offers{"bash", "fish", "zsh"}));
 }
 

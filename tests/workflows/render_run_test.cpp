@@ -125,8 +125,8 @@ TEST_F(Render, FilmsHaveOneScaleOfColours)
                   std::string(maximum))
                   .out,
               "two/00000.png\ntwo/00001.png\ntwo/00002.png\ntwo/00003.png\n");
-    EXPECT_EQ(picture("two/00000.png"), picture("film/00001.png"));
-    EXPECT_EQ(picture("two/00001.png"), picture("film/00003.png"));
+    EXPECT_EQ(picture("two/00001.png"), picture("film/00001.png"));
+    EXPECT_EQ(picture("two/00003.png"), picture("film/00003.png"));
     EXPECT_NE(picture("film/00001.png"), picture("film/00003.png"));
 }
 

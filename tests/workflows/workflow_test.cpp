@@ -18,7 +18,7 @@ std::vector<std::filesystem::path> shipped_workflows()
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(SIGMAFLOW_WORKFLOWS))
         if (entry.path().extension() == ".json" &&
-            entry.path().filename() != "workflow.schema.json")
+            !entry.path().stem().string().ends_with(".schema"))
             files.push_back(entry.path());
     return files;
 }
