@@ -68,6 +68,11 @@ std::string complaint(const Error& error)
     return std::string("sigmaflow: ") + what + error.what() + "\n";
 }
 
+void describe_json(CLI::App& app, bool& json)
+{
+    app.add_flag("--json", json, "results and errors as JSON, one value per line, for programs");
+}
+
 std::function<std::vector<io::Override>()> declare_overrides(CLI::App& app)
 {
     const auto given = std::make_shared<std::vector<std::string>>();
@@ -81,12 +86,6 @@ std::function<std::vector<io::Override>()> declare_overrides(CLI::App& app)
             overrides.push_back(io::parse_override("--set", text));
         return overrides;
     };
-}
-
-void print_result(std::string_view text)
-{
-    std::cout << text << std::flush;
-    if (!std::cout) throw Error(ErrorKind::file, "standard output", "cannot be written");
 }
 
 void print_hint(std::string_view text)

@@ -6,6 +6,7 @@
 #pragma once
 #include "engine/error.h"
 #include "io/json_override.h"
+#include "workflows/output.h"
 
 #include <functional>
 #include <span>
@@ -62,9 +63,8 @@ std::function<Work()> declare_commands(CLI::App& app);
 /// "sigmaflow: error: ..." for stderr.
 std::string complaint(const Error& error);
 
-/// Prints results. Error(file) if that fails: a full disk or a closed pipe must not pass for
-/// success.
-void print_result(std::string_view text);
+/// Declares the flag --json.
+void describe_json(CLI::App& app, bool& json);
 
 /// A line on stderr for people, if that is a terminal: what to do next.
 void print_hint(std::string_view text);

@@ -1,17 +1,10 @@
 #include "workflows/json_lines.h"
 
-#include "workflows/commands.h"
-
-#include <CLI/CLI.hpp>
+#include "workflows/output.h"
 
 namespace sigmaflow::workflows {
 
 using Json = nlohmann::ordered_json;
-
-void describe_json(CLI::App& app, bool& json)
-{
-    app.add_flag("--json", json, "results and errors as JSON, one value per line, for programs");
-}
 
 std::string_view kind_name(ErrorKind kind)
 {

@@ -10,14 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace CLI {
-class App;
-}
-
 namespace sigmaflow::workflows {
-
-/// Declares the flag --json.
-void describe_json(CLI::App& app, bool& json);
 
 /// "input", "no_space", ...: the word of ErrorKind.
 std::string_view kind_name(ErrorKind kind);
