@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian packages), configures and builds the preset "release".
-# Called by workflows/quickstart.sh and tests/run.sh; nothing else is downloaded.
+# Installs what is missing (Debian packages), configures and builds the preset "release", or the one that
+# SIGMAFLOW_PRESET names. Called by the other scripts here and in tests/; nothing else is downloaded.
 # An argument names the one target to build; SIGMAFLOW_MORE_PACKAGES names packages beside those of the build.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -44,5 +44,6 @@ else
 fi
 
 command -v cmake >/dev/null || { echo "setup: cmake is missing" >&2; exit 1; }
-cmake --preset release
-cmake --build --preset release --parallel "$(nproc)" ${1:+--target "$1"}
+preset="${SIGMAFLOW_PRESET:-release}"
+cmake --preset "$preset"
+cmake --build --preset "$preset" --parallel "$(nproc)" ${1:+--target "$1"}
